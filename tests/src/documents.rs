@@ -51,8 +51,6 @@ pub fn tables() -> Result<Vec<Table>, String> {
         of("docs/flights.md", "logged-hover", tables::logged_hover()?),
         of("docs/flights.md", "hover", tables::hover()?),
         of("docs/flights.md", "tracking", tables::tracking()?),
-        of("docs/flights.md", "energy", tables::energy()?),
-        of("docs/flights.md", "rotor-out", tables::rotor_out()?),
     ]);
     Ok(tables)
 }

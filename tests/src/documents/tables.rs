@@ -563,19 +563,17 @@ pub(super) fn logged_hover() -> Result<String, String> {
     ))
 }
 
-/// One flight of `tests/measurements/flight.csv` or `energy.csv`: scenario, seed, mixer or share of
-/// the power bias, and figures.
+/// One flight of `tests/measurements/flight.csv`.
 struct Flight {
     scenario: String,
     seed: String,
     mixer: String,
-    /// Nine errors of Table II (MSE, MAE, MaxAE of x, y, z), then hover thrust over weight; or the
-    /// energy, J.
+    /// Nine errors of Table II (MSE, MAE, MaxAE of x, y, z), then hover thrust over weight.
     figures: Vec<f64>,
 }
 
-fn flights(file: &str) -> Result<Vec<Flight>, String> {
-    let path = root().join("tests/measurements").join(file);
+fn flights() -> Result<Vec<Flight>, String> {
+    let path = root().join("tests/measurements/flight.csv");
     measured(&path)?
         .into_iter()
         .map(|row| {
@@ -625,7 +623,7 @@ fn scenarios(flights: &[Flight]) -> Vec<&str> {
 
 /// Thrust command over weight in hover (Fig. 10).
 pub(super) fn hover() -> Result<String, String> {
-    let flights = flights("flight.csv")?;
+    let flights = flights()?;
     let row = |scenario: &str| {
         let of = |mixer: &str| {
             let flown = flights
@@ -642,75 +640,6 @@ pub(super) fn hover() -> Result<String, String> {
     ))
 }
 
-/// Energy of the manoeuvre with shares of a power bias.
-pub(super) fn energy() -> Result<String, String> {
-    let flights = flights("energy.csv")?;
-    let row = |scenario: &str| {
-        let of = |mixer: &str| -> Vec<f64> {
-            let flown = flights
-                .iter()
-                .filter(|flight| flight.scenario == scenario && flight.mixer == mixer);
-            flown.map(|flight| flight.figures[0]).collect()
-        };
-        let without = of("0");
-        let saved = |share: &str| {
-            let pairs = of(share).into_iter().zip(&without);
-            spread(&pairs.map(|(a, b)| 100.0 * (1.0 - a / b)).collect::<Vec<_>>(), 2)
-        };
-        vec![scenario.to_owned(), spread(&without, 0), saved("0.5"), saved("1")]
-    };
-    let rows: Vec<Vec<String>> = scenarios(&flights).into_iter().map(row).collect();
-    Ok(markdown(
-        &[
-            "",
-            "energy without, J",
-            "saved by half of the bias, %",
-            "by all of it, %",
-        ],
-        &rows,
-    ))
-}
-
-/// Means of what a rotor does that stops, with shares of a power bias.
-pub(super) fn rotor_out() -> Result<String, String> {
-    let path = root().join("tests/measurements/rotor-out.csv");
-    let stops = measured(&path)?;
-    let mut rows: Vec<Vec<String>> = Vec::new();
-    for rotor in ["upper", "lower"] {
-        for unknown_ms in ["100", "200", "300"] {
-            let of = |share: &str| {
-                let kind = [rotor, unknown_ms, share];
-                let these = stops
-                    .iter()
-                    .filter(|stop| stop.get(..3).is_some_and(|key| key == kind));
-                let mean = |column: usize| {
-                    let cells = these.clone().filter_map(|stop| stop.get(column)?.parse().ok());
-                    let values: Vec<f64> = cells.collect();
-                    values.iter().sum::<f64>() / values.len() as f64
-                };
-                format!("{:.1}; {:.3}", mean(4), mean(5))
-            };
-            rows.push(
-                [
-                    &[rotor.to_owned(), unknown_ms.to_owned()][..],
-                    &["0", "0.5", "1"].map(of),
-                ]
-                .concat(),
-            );
-        }
-    }
-    Ok(markdown(
-        &[
-            "rotor",
-            "unknown for (ms)",
-            "without: tilt (deg); height (m)",
-            "half of the bias",
-            "all of it",
-        ],
-        &rows,
-    ))
-}
-
 /// Names of the errors of Table II, with the paper's own ratios of x, y and z.
 const TABLE_II: [(&str, [f64; 3]); 3] = [
     ("MSE", [0.55, 0.39, 0.45]),
@@ -720,7 +649,7 @@ const TABLE_II: [(&str, [f64; 3]); 3] = [
 
 /// Table II: errors with the coaxial mixer over those with the conventional one, seed by seed.
 pub(super) fn tracking() -> Result<String, String> {
-    let flights = flights("flight.csv")?;
+    let flights = flights()?;
     let scenarios = scenarios(&flights);
     let mut rows = Vec::new();
     for (row, (name, paper)) in TABLE_II.into_iter().enumerate() {

@@ -24,7 +24,6 @@ pub mod air;
 pub mod battery;
 pub mod controller;
 pub mod conventional;
-pub mod energy;
 pub mod figures;
 pub mod flight;
 pub mod integrator;

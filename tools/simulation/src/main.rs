@@ -7,7 +7,6 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Parser;
-use simulation::energy::{self, Rotors, Saving, Stops};
 use simulation::figures;
 use simulation::flight::Scenario;
 use simulation::log;
@@ -31,12 +30,6 @@ struct Arguments {
     /// Write the errors of all flights as CSV to this file
     #[arg(long, value_name = "FILE")]
     errors: Option<PathBuf>,
-    /// Write the energy of all flights with shares of a power bias as CSV to this file
-    #[arg(long, value_name = "FILE")]
-    energy: Option<PathBuf>,
-    /// Write what a rotor does that stops, with these shares, as CSV to this file
-    #[arg(long, value_name = "FILE")]
-    rotor_out: Option<PathBuf>,
 }
 
 fn main() -> ExitCode {
@@ -68,31 +61,6 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         comparisons.push(comparison);
     }
     write!(out, "{NOTES}")?;
-    writeln!(
-        out,
-        "\nEnergy of the manoeuvre with the rotors of airframes/x8-11in-least-power.toml"
-    )?;
-    let rotors = Rotors::new()?;
-    let mut savings = Vec::new();
-    for scenario in Scenario::ALL {
-        let flights = (1..=arguments.seeds)
-            .map(|seed| rotors.fly(&scenario, seed))
-            .collect::<Result<_, _>>()?;
-        let saving = Saving { scenario, flights };
-        writeln!(out, "{saving}")?;
-        savings.push(saving);
-    }
-    if let Some(path) = &arguments.energy {
-        energy::write(&savings, create(path)?)?;
-    }
-    let mut stops = Stops(Vec::new());
-    for seed in 1..=arguments.seeds {
-        stops.0.extend(rotors.stops(seed)?);
-    }
-    writeln!(out, "\nA rotor stops in hover with them\n{stops}")?;
-    if let Some(path) = &arguments.rotor_out {
-        energy::write_stops(&stops, create(path)?)?;
-    }
     for Comparison { scenario, flights } in &comparisons {
         let Some(first) = flights.first() else { continue };
         if let Some(folder) = &arguments.plots {

@@ -4,8 +4,7 @@ use std::fmt;
 
 use mixer_compiler::airframe::Airframe;
 use mixer_compiler::model::effectiveness::Effectiveness;
-use mixer_compiler::tables::MixerTables;
-use mixer_rt::{Health, SetpointError, Wrench};
+use mixer_rt::{SetpointError, Wrench};
 use nalgebra::{SVector, Vector4};
 
 use crate::conventional::ConventionalMixer;
@@ -39,8 +38,6 @@ pub enum Mixer {
     Coaxial,
     /// The conventional mixer.
     Conventional(Box<ConventionalMixer>),
-    /// The mixer of another airframe with as many rotors.
-    Compiled(Box<MixerTables>),
 }
 
 impl Mixer {
@@ -68,31 +65,12 @@ impl Mixer {
     pub fn mix(&self, wrench: &Vector4<f64>, voltage_v: f64) -> Result<Mixed, SetpointError> {
         match self {
             Mixer::Coaxial => {
-                let mix = isae_x8::mix(&setpoint(wrench), voltage_v as f32)?;
+                let setpoint = Wrench::from_array(wrench.map(|x| x as f32).into());
+                let mix = isae_x8::mix(&setpoint, voltage_v as f32)?;
                 let throttle = SVector::from(mix.throttle).map(f64::from);
                 Ok((throttle, mix.saturation.any_axis()))
             }
             Mixer::Conventional(mixer) => mixer.mix(wrench, voltage_v),
-            Mixer::Compiled(tables) => mix(tables, wrench, voltage_v, Health::GOOD),
         }
     }
-}
-
-fn setpoint(wrench: &Vector4<f64>) -> Wrench {
-    Wrench::from_array(wrench.map(|x| x as f32).into())
-}
-
-/// [`Mixer::mix`] by the tables of an airframe of at most eight rotors, with some out.
-///
-/// # Errors
-/// A wrench or voltage that is not finite.
-pub fn mix(
-    tables: &MixerTables,
-    wrench: &Vector4<f64>,
-    voltage_v: f64,
-    health: Health,
-) -> Result<Mixed, SetpointError> {
-    let (throttle, _, saturation) = tables.mix_with_health(&setpoint(wrench), voltage_v as f32, health)?;
-    let rotors = throttle.into_iter().map(f64::from).chain([0.0; ROTORS]);
-    Ok((SVector::from_iterator(rotors.take(ROTORS)), saturation.any_axis()))
 }

@@ -1,7 +1,7 @@
 //! One vehicle for the software in the loop of PX4 and ArduPilot.
 //!
 //! [`vehicle`] makes the plant of an airframe file, [`world`] has it on the ground or in the air,
-//! with [`wind`] or without, [`sensors`] measures it. [`px4`] and [`ardupilot`] speak the interfaces
+//! [`sensors`] measures it. [`px4`] and [`ardupilot`] speak the interfaces
 //! that the stacks have for outside simulators; [`pilot`] flies a [`plan`] by MAVLink; [`record`]
 //! holds the truth, [`score`] makes the table of it.
 
@@ -18,7 +18,6 @@ pub mod record;
 pub mod score;
 pub mod sensors;
 pub mod vehicle;
-pub mod wind;
 pub mod world;
 
 use std::fs::File;

@@ -1,6 +1,8 @@
 //! Flights whose plant is off by a known factor, logged as the stacks log them, in wind, with noise and a battery
 //! that sags: `mixer_files::review` finds the factor, and its interval holds it.
 
+mod wind;
+
 use clap::Parser;
 use mixer_compiler::{Compiled, Source};
 use mixer_facts::params::Stack;
@@ -13,8 +15,8 @@ use simulation::air::normal;
 use simulation::sitl::arguments::Arguments;
 use simulation::sitl::sensors::Sensors;
 use simulation::sitl::vehicle::{Throttles, Vehicle};
-use simulation::sitl::wind::Wind;
 use simulation::sitl::world::World;
+use wind::Wind;
 
 const X8: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/simulator/x8.toml");
 
@@ -92,7 +94,8 @@ fn fly_with(
     noise: f64,
     seed: u64,
 ) -> Flight {
-    let mut world = World::new(before.clone(), Some(Wind::new(wind_m_s, 1.15, seed)));
+    let mut world = World::new(before.clone());
+    let mut wind = Wind::new(wind_m_s, 1.15, seed);
     let mut sensors = Sensors::new(noise, seed);
     let mut sum = Vector3::zeros();
     let [
@@ -132,6 +135,8 @@ fn fly_with(
             landed.push(time_s, vec![f64::from(u8::from(world.on_ground))]);
         }
         let command = Throttles::from_fn(|rotor, _| throttles.get(rotor).copied().unwrap_or(0.0).into());
+        world.push_m_s2 = wind.drag(&world.state);
+        wind.advance(STEP_S);
         world.advance(&command, (1e6 * STEP_S) as u64);
     }
     assert_eq!(world.crashed_s, None);

@@ -41,16 +41,13 @@ pub struct Arguments {
     /// Multiply thrust and torque of every pair, so that the mixer's model is off by a known factor
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = positive)]
     pub thrust_scale: f64,
-    /// Steady wind from a drawn direction, m/s, with gusts, and drag; without it there is no drag
-    #[arg(long, value_name = "M_S", value_parser = not_negative)]
-    pub wind: Option<f64>,
     /// Noise of the sensors as a share of the usual
     #[arg(long, value_name = "SHARE", default_value_t = 1.0, value_parser = not_negative)]
     pub noise: f64,
     /// Standard deviation of the rotors' throttles about the commanded ones
     #[arg(long, value_name = "SHARE", default_value_t = 0.0, value_parser = not_negative)]
     pub spread: f64,
-    /// Seed of noise, spread and wind
+    /// Seed of noise and spread
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
     /// Voltage of the battery at the start, V; without it `reference_v` of the file

@@ -2,14 +2,11 @@
 
 use std::time::{Duration, Instant};
 
-use mixer_compiler::atmosphere;
-
 use super::arguments::{Arguments, Failure};
 use super::pilot::Pilot;
 use super::plan::{FIRST_S, Manoeuvre};
 use super::record::Record;
 use super::vehicle::{Throttles, Vehicle};
-use super::wind::Wind;
 use super::world::World;
 
 /// How a flight ended.
@@ -46,10 +43,8 @@ impl Flight {
             output: 0,
             time_s: FIRST_S,
         }));
-        let density_kg_m3 = atmosphere::density_at(vehicle.altitude_m);
-        let wind = |speed_m_s| Wind::new(speed_m_s, density_kg_m3, arguments.seed);
         Flight {
-            world: World::new(vehicle, arguments.wind.map(wind)),
+            world: World::new(vehicle),
             pilot,
             record: Record::default(),
             failed_s: None,
@@ -109,7 +104,7 @@ impl Flight {
             return Err("the stack has started anew, its flight is over".to_owned());
         }
         let time_us = self.world.time_us;
-        self.world = World::new(self.world.vehicle.clone(), self.world.wind.clone());
+        self.world = World::new(self.world.vehicle.clone());
         self.world.time_us = time_us;
         Ok(())
     }

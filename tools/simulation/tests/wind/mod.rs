@@ -17,9 +17,9 @@ use nalgebra::Vector3;
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::SeedableRng;
 
-use super::vehicle::MOST_ROTORS;
-use crate::air::{gauss_markov, normal};
-use crate::state::State;
+use simulation::air::{gauss_markov, normal};
+use simulation::sitl::vehicle::MOST_ROTORS;
+use simulation::state::State;
 
 /// Momentum drag, M, 1/s.
 const MOMENTUM_1_S: f64 = 0.15;
@@ -34,7 +34,7 @@ const LENGTH_M: Vector3<f64> = Vector3::new(36.0, 36.0, 5.0);
 
 /// The wind at the vehicle.
 #[derive(Clone, Debug)]
-pub struct Wind {
+pub(crate) struct Wind {
     speed_m_s: f64,
     density_kg_m3: f64,
     source: Pcg64Mcg,
@@ -44,7 +44,7 @@ pub struct Wind {
 
 impl Wind {
     /// A steady speed in air of a density; equal seeds give equal directions and gusts.
-    pub fn new(speed_m_s: f64, density_kg_m3: f64, seed: u64) -> Wind {
+    pub(crate) fn new(speed_m_s: f64, density_kg_m3: f64, seed: u64) -> Wind {
         // Another sequence than those of spread and noise.
         let mut source = Pcg64Mcg::seed_from_u64(seed ^ 0x0a_17);
         // Two equal normal deviates have no preferred direction.
@@ -61,12 +61,12 @@ impl Wind {
     }
 
     /// Velocity of the air in the world, m/s.
-    pub fn velocity(&self) -> Vector3<f64> {
+    pub(crate) fn velocity(&self) -> Vector3<f64> {
         self.steady + self.gust
     }
 
     /// Lets the gusts go on by `step` seconds.
-    pub fn advance(&mut self, step: f64) {
+    pub(crate) fn advance(&mut self, step: f64) {
         for axis in 0..3 {
             let steps = step * self.speed_m_s / LENGTH_M[axis];
             let size = GUST[axis] * self.speed_m_s;
@@ -75,14 +75,13 @@ impl Wind {
     }
 
     /// Drag over mass in the body, m/s2.
-    pub fn drag(&self, state: &State<MOST_ROTORS>) -> Vector3<f64> {
+    pub(crate) fn drag(&self, state: &State<MOST_ROTORS>) -> Vector3<f64> {
         let v = state.rotation().inverse() * (state.velocity - self.velocity());
         let bluff = v * (0.5 * self.density_kg_m3 * v.norm() / BALLISTIC_KG_M2);
         -(Vector3::new(v.x, v.y, 0.0) * MOMENTUM_1_S + bluff)
     }
 }
 
-#[cfg(test)]
 mod tests {
     use nalgebra::UnitQuaternion;
 
