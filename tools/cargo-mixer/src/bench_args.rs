@@ -2,11 +2,11 @@
 
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use mixer_identify::bench::Preparation;
 use mixer_identify::bench::air;
 use mixer_identify::bench::header::{ByHand, ROLES, unknown_role};
 use mixer_identify::bench::read::Reading;
 use mixer_identify::bench::sign::{SignChoice, SignPolicy};
-use mixer_identify::bench::{Preparation, SETTLE, STOP_THROTTLE};
 use mixer_identify::fit::basis::ThrottleBox;
 use mixer_identify::identified::Settings;
 
@@ -121,17 +121,10 @@ pub struct ReadingArgs {
     /// Pulse widths of throttle 0 and 1, microseconds [default for pulse-width columns: 1000,2000].
     #[arg(long, value_name = "LOW,HIGH", value_parser = pwm_range)]
     pub pwm_range: Option<[f64; 2]>,
-    /// A rotor at or below this throttle stands still: a start or stop row; a negative value keeps
-    /// all rows.
-    #[arg(long, value_name = "THROTTLE", default_value_t = STOP_THROTTLE, value_parser = finite, allow_negative_numbers = true)]
-    pub stop_throttle: f64,
     /// The speed controllers hold a speed: the speed at full throttle, revolutions per minute.
     /// Where a file has columns of speeds, throttle is these over it.
     #[arg(long, value_name = "RPM", value_parser = positive)]
     pub rpm_at_full: Option<f64>,
-    /// Part of each plateau of a streaming log that is dropped at its beginning, in [0, 1).
-    #[arg(long, value_name = "PART", default_value_t = SETTLE, value_parser = part)]
-    pub settle: f64,
     /// A column by hand, as upper="ESC A" or lower=#5 (number from 1). Roles: upper, lower, thrust,
     /// torque, upper_thrust, lower_thrust, upper_torque, lower_torque, voltage, lower_voltage,
     /// current, upper_current, lower_current, power, upper_power, lower_power, upper_speed, lower_speed,
@@ -171,8 +164,6 @@ impl ReadingArgs {
                 pwm_range: self.pwm_range,
             },
             preparation: Preparation {
-                stop_throttle: self.stop_throttle,
-                settle: self.settle,
                 tare: self.tare,
                 signs: SignPolicy {
                     thrust: self.thrust_sign,
@@ -189,15 +180,12 @@ impl ReadingArgs {
     fn options(&self) -> Vec<String> {
         let signs =
             [self.thrust_sign, self.torque_sign].map(|sign| (sign != SignChoice::Auto).then_some(sign));
-        let number = |x: f64, default: f64| (x != default).then(|| x.to_string());
         let one = [
             (
                 "--pwm-range",
                 self.pwm_range.map(|[low, high]| format!("{low},{high}")),
             ),
             ("--rpm-at-full", self.rpm_at_full.map(|rpm| rpm.to_string())),
-            ("--stop-throttle", number(self.stop_throttle, STOP_THROTTLE)),
-            ("--settle", number(self.settle, SETTLE)),
             ("--thrust-sign", signs[0].map(|sign| sign.to_string())),
             ("--torque-sign", signs[1].map(|sign| sign.to_string())),
         ];
@@ -246,10 +234,6 @@ pub fn said(error: &clap::Error) -> String {
     let ends = ["\n\nUsage:", "\n\nFor more information"].map(|end| told.find(end).unwrap_or(told.len()));
     let told = &told[..ends[0].min(ends[1])];
     told.trim_start_matches("error: ").to_owned()
-}
-
-fn part(text: &str) -> Result<f64, String> {
-    number(text, |x| (0.0..1.0).contains(&x), "is not in [0, 1)")
 }
 
 /// The air at the bench.

@@ -8,29 +8,8 @@ use mixer_identify::identified::{Identified, Settings};
 use mixer_identify::refusal::Refusal;
 use mixer_identify::texts::{self, Text};
 
-use crate::today::today;
-
-/// Inputs of a bench command from outside of its arguments: files and the day.
-pub struct Outside<'a> {
-    /// A file by its path.
-    pub text: &'a dyn Fn(&Path) -> Text,
-    /// `YYYY-MM-DD`.
-    pub today: Option<String>,
-}
-
-impl Outside<'_> {
-    /// The file system and the clock.
-    pub fn of_the_machine() -> Outside<'static> {
-        Outside {
-            text: &text,
-            today: today(),
-        }
-    }
-
-    pub(crate) fn texts(&self, paths: &[PathBuf]) -> Vec<Text> {
-        paths.iter().map(|path| (self.text)(path)).collect()
-    }
-}
+/// How a bench command gets a file: [`text`] from the file system.
+pub type Reader<'a> = &'a dyn Fn(&Path) -> Text;
 
 /// A file, or why it cannot be read.
 pub fn text(path: &Path) -> Text {
@@ -40,6 +19,11 @@ pub fn text(path: &Path) -> Text {
         content: crate::file::bytes(path)
             .map_err(|error| read::unreadable(&path.display().to_string(), &error.to_string())),
     }
+}
+
+/// [`text`] of files.
+pub(crate) fn texts(paths: &[PathBuf]) -> Vec<Text> {
+    paths.iter().map(|path| text(path)).collect()
 }
 
 /// Identifies what files hold.
@@ -60,7 +44,7 @@ pub fn identify_with_runs(
     settings: &Settings,
 ) -> Result<Identified, Vec<Refusal>> {
     let runs = runs.map(|run| run.map(text));
-    let maps: Vec<Text> = paths.iter().map(|path| text(path)).collect();
+    let maps: Vec<Text> = texts(paths);
     texts::identify(&maps, runs.each_ref().map(Option::as_ref), settings).map(|answer| answer.found)
 }
 

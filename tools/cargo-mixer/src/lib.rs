@@ -17,7 +17,6 @@ pub mod frame_args;
 pub mod pack;
 pub mod place;
 pub mod rows;
-mod today;
 
 /// Writes an output to its file, or prints it where there is none.
 fn deliver(output: Option<&Path>, force: bool, text: &str) -> Done {

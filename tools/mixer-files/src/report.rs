@@ -5,13 +5,12 @@
 //!
 //! ```
 //! use mixer_compiler::Source;
-//! use mixer_files::report::origin::Origin;
 //! use mixer_files::report::page::page;
 //! use mixer_files::report::study::Study;
 //!
 //! # let text = std::fs::read_to_string("../../airframes/single-pair.toml").unwrap();
 //! let compiled = mixer_compiler::compile(&Source::new("single-pair.toml", text)).unwrap();
-//! let html = page(&Study::new(&compiled, None), None, &Origin::default());
+//! let html = page(&Study::new(&compiled, None), None, None);
 //! assert!(html.starts_with("<!DOCTYPE html>"));
 //! ```
 //!
@@ -31,7 +30,6 @@ pub mod layout;
 pub mod level;
 pub mod maps;
 pub mod number;
-pub mod origin;
 pub mod page;
 pub mod plots;
 mod rows;

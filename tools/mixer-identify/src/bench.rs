@@ -1,7 +1,7 @@
 //! From the samples of a log to the bench points that are fitted.
 //!
 //! In this order: find out whether both rotors turned; examine rows at rest; drop start and stop rows (a rotor at or
-//! below `stop_throttle`); reduce a streaming log to one mean per plateau of constant command; make
+//! below [`STOP_THROTTLE`]); reduce a streaming log to one mean per plateau of constant command; make
 //! signs and sums; refuse rows with a missing value.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -9,16 +9,14 @@ use std::collections::{BTreeMap, BTreeSet};
 use serde::Serialize;
 
 use self::air::{DENSITIES, Known};
-use self::date::date_in;
 use self::header::Columns;
 use self::read::{Fault, Log, RefusedRow, Sample, refused_told};
-use self::sign::{SignChoice, SignPolicy, Signs};
+use self::sign::{SignPolicy, Signs};
 use self::units::Quantity;
 use crate::refusal::Refusal;
 use crate::rotor::Turning;
 
 pub mod air;
-pub mod date;
 pub mod header;
 pub mod number;
 pub mod plateau;
@@ -93,8 +91,6 @@ pub struct Bench {
     pub file: String,
     /// Format of the header.
     pub format: String,
-    /// Date of the measurement, `YYYY-MM-DD`, from `--date` or the file's name.
-    pub date: Option<String>,
     /// Pair or single rotor.
     pub kind: Kind,
     /// Which rotor turns in a run of one, where the header has a throttle for each.
@@ -159,12 +155,8 @@ pub(crate) fn mean_voltage<'a>(points: impl IntoIterator<Item = &'a Point>) -> O
 }
 
 /// What decides how a log becomes points.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Preparation {
-    /// Throttle at or below which a rotor stands still.
-    pub stop_throttle: f64,
-    /// Part of each plateau of a streaming log that is left to settle.
-    pub settle: f64,
     /// Signs of thrust and torque.
     pub signs: SignPolicy,
     /// Whether what the load cells read at rest is taken off.
@@ -175,34 +167,12 @@ pub struct Preparation {
     /// Whether a run of one rotor is of that rotor, not of the whole: what it drives through the
     /// one at rest, which has a drag, is then left aside.
     pub own_columns: bool,
-    /// Date given by hand.
-    pub date: Option<String>,
     /// The air of the bench, given by hand; else of columns where there are any.
     pub air: Option<Known>,
 }
 
-/// Throttle at or below which a rotor stands still, unless the user says otherwise.
+/// Throttle at or below which a rotor stands still.
 pub const STOP_THROTTLE: f64 = 0.005;
-/// Part of each plateau of a streaming log that is left to settle, unless the user says otherwise.
-pub const SETTLE: f64 = 0.33;
-
-impl Default for Preparation {
-    fn default() -> Self {
-        Self {
-            stop_throttle: STOP_THROTTLE,
-            settle: SETTLE,
-            signs: SignPolicy {
-                thrust: SignChoice::Auto,
-                torque: SignChoice::Auto,
-            },
-            tare: false,
-            torque_may_lack: false,
-            own_columns: false,
-            date: None,
-            air: None,
-        }
-    }
-}
 
 /// Most points of a file: 100 levels of each rotor, plateaus of a streaming log counted as one.
 const MOST_POINTS: usize = 10_000;
@@ -235,7 +205,7 @@ pub fn prepare(log: Log, how: &Preparation) -> Result<Bench, Refusal> {
         samples.iter_mut().for_each(|s| s.throttle[1] = s.throttle[0]);
     }
     let two_throttles = one_signal || columns[Quantity::Throttle].rotors[1].is_some();
-    let turns = |rotor: usize| samples.iter().any(|s| s.throttle[rotor] > how.stop_throttle);
+    let turns = |rotor: usize| samples.iter().any(|s| s.throttle[rotor] > STOP_THROTTLE);
     let kind = match two_throttles && turns(0) && turns(1) {
         true => Kind::Pair,
         false => Kind::SingleRotor,
@@ -257,19 +227,19 @@ pub fn prepare(log: Log, how: &Preparation) -> Result<Bench, Refusal> {
         _ => {}
     }
 
-    let stands = |throttle: f64| throttle <= how.stop_throttle;
+    let stands = |throttle: f64| throttle <= STOP_THROTTLE;
     let both = |s: &Sample| {
         s.throttle[..1 + usize::from(two_throttles)]
             .iter()
             .all(|&t| stands(t))
     };
-    let tare = tare::examine(&mut samples, both, how.settle, how.tare);
+    let tare = tare::examine(&mut samples, both, how.tare);
 
     // An empty throttle is no start or stop row: it stays and is refused later, with its line.
     let before = samples.len();
     samples.retain(|s| match kind {
-        Kind::Pair => !s.throttle.iter().any(|&t| t <= how.stop_throttle),
-        Kind::SingleRotor => s.throttle[rotor].is_nan() || s.throttle[rotor] > how.stop_throttle,
+        Kind::Pair => !s.throttle.iter().any(|&t| t <= STOP_THROTTLE),
+        Kind::SingleRotor => s.throttle[rotor].is_nan() || s.throttle[rotor] > STOP_THROTTLE,
     });
     let start_stop_rows = before - samples.len();
     let turning: &[usize] = if kind == Kind::Pair { &[0, 1] } else { &[rotor] };
@@ -278,7 +248,7 @@ pub fn prepare(log: Log, how: &Preparation) -> Result<Bench, Refusal> {
     }
     let (streaming, mut settling_rows) = (plateau::is_streaming(&samples), 0);
     if streaming {
-        (samples, settling_rows) = plateau::means(&samples, how.settle);
+        (samples, settling_rows) = plateau::means(&samples);
     }
     if samples.len() > MOST_POINTS {
         return Err(Refusal::of(
@@ -343,14 +313,13 @@ pub fn prepare(log: Log, how: &Preparation) -> Result<Bench, Refusal> {
                  refused{first}",
                 refused.len()
             ),
-            "rows with both rotors turning (see --stop-throttle) and thrust and torque measured",
+            "rows with both rotors turning and thrust and torque measured",
         ));
     }
     Ok(Bench {
         no_power: columns.no_power(),
         turning: (kind == Kind::SingleRotor && two_throttles)
             .then_some([Turning::Upper, Turning::Lower][rotor]),
-        date: how.date.clone().or_else(|| date_in(&name)),
         file: name,
         format: columns.format,
         kind,

@@ -105,9 +105,8 @@ pub fn of_identified(identified: &Identified) -> Vec<Fact> {
     facts.all
 }
 
-/// One line on a file: format, date, rows.
+/// One line on a file: format, rows.
 fn provenance(file: &Bench) -> String {
-    let date = file.date.as_deref().unwrap_or("date unknown");
     let kind = ["", ", single rotor"][usize::from(file.kind == Kind::SingleRotor)];
     let refused = file.refused_rows.len();
     let used = file
@@ -121,10 +120,7 @@ fn provenance(file: &Bench) -> String {
     ];
     let parts = parts.iter().filter(|(count, _)| *count > 0);
     let parts: String = parts.map(|(count, what)| format!(", {count} {what}")).collect();
-    format!(
-        "{}{kind}, {date}: {used} of {} rows used{parts}",
-        file.format, file.rows
-    )
+    format!("{}{kind}: {used} of {} rows used{parts}", file.format, file.rows)
 }
 
 fn signs(file: &Bench) -> String {

@@ -189,11 +189,9 @@ fn to_fill_in(reference: Option<f64>, range: Option<[f64; 2]>, exponents: [Optio
 /// The tables of a prediction.
 pub fn of_prediction(predicted: &Predicted) -> String {
     let facts = of_predicted(predicted);
-    let day = predicted.date.as_ref().map(|date| format!(" on {date}"));
     let mut head = format!(
-        "# Predicted by {}{}, not measured.\n{}",
+        "# Predicted by {}, not measured.\n{}",
         predicted.generator,
-        day.unwrap_or_default(),
         comments(&facts, "")
     );
     for warning in &predicted.warnings {

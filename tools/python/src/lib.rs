@@ -19,7 +19,7 @@ mod _native {
     use std::fmt::Display;
 
     use cargo_mixer::bench_args::parsed;
-    use cargo_mixer::bench_files::Outside;
+    use cargo_mixer::bench_files;
     use cargo_mixer::commands::identify::{IdentifyArgs, NoAnswer};
     use cargo_mixer::commands::predict::PredictArgs;
     use cargo_mixer::commands::{mix, wrench};
@@ -198,7 +198,7 @@ mod _native {
     #[pyfunction]
     fn identify(words: Vec<String>) -> Texts {
         let args: IdentifyArgs = parsed("identify", words.iter().map(String::as_str)).map_err(error)?;
-        let answer = args.answer(&Outside::of_the_machine());
+        let answer = args.answer(&bench_files::text);
         let (answer, notes) = answer.map_err(|none| match none {
             NoAnswer::Usage(message) => error(message),
             NoAnswer::Refused(refusals) => refused(refusals),
@@ -209,7 +209,7 @@ mod _native {
     #[pyfunction]
     fn predict(words: Vec<String>) -> Texts {
         let args: PredictArgs = parsed("predict", words.iter().map(String::as_str)).map_err(error)?;
-        let answer = args.answer(&Outside::of_the_machine()).map_err(refused)?;
+        let answer = args.answer(&bench_files::text).map_err(refused)?;
         texts(answer, args.frame.as_ref(), Vec::new())
     }
 }

@@ -20,7 +20,6 @@ const EXAMPLES = {
   import: "--upper 0,1,2,3", new: "",
 };
 
-const today = () => new Date().toISOString().slice(0, 10);
 const later = (wait, run) => { let timer; return (...words) => { clearTimeout(timer); timer = setTimeout(run, wait, ...words); }; };
 const quoted = (word) => (/^[\w./,=:+-]+$/.test(word) ? word : `'${word.replaceAll("'", "'\\''")}'`);
 
@@ -174,7 +173,7 @@ async function remake() {
   const mine = turn += 1, lines = [];
   const run = async (words, more) => {
     lines.push(["cargo mixer", ...words, ...more].map((word, k) => (k ? quoted(word) : word)).join(" "));
-    return ask("make", [...words, ...more], ...named([...state.files, ...(tables ? [tables] : [])]), today());
+    return ask("make", [...words, ...more], ...named([...state.files, ...(tables ? [tables] : [])]));
   };
   let report = "", notes = [], made = null, faults = refused, tables;
   try {
@@ -267,7 +266,7 @@ const checkSoon = later(250, check);
 
 const reportSoon = later(400, async () => {
   const mine = checking;
-  const answer = await ask("report", ...named(of("map")), today()).catch((error) => ({ body: "", refused: error.message }));
+  const answer = await ask("report", ...named(of("map"))).catch((error) => ({ body: "", refused: error.message }));
   if (mine !== checking) return;
   $("report").innerHTML = answer.body;
   if (answer.refused) $("report").prepend(element("p", { className: "warnings", textContent: `Bench files are not shown: ${answer.refused}` }));
@@ -379,7 +378,7 @@ async function saved(what) {
   if (what === "pair") return pair;
   if (checked !== state.airframe.text) await check();
   if (checked !== state.airframe.text || told.errors.length) throw new Error(`${state.airframe.name} does not compile: nothing was saved`);
-  if (what === "report") return { name: `${told.name}.html`, text: await ask("page", ...named(of("map")), today()) };
+  if (what === "report") return { name: `${told.name}.html`, text: await ask("page", ...named(of("map"))) };
   return ask("output", what, state.form.pulses);
 }
 async function save(what) {

@@ -9,7 +9,6 @@ use mixer_facts::params::Stack;
 use mixer_facts::params::{Options, params};
 use mixer_files::golden;
 use mixer_files::report::bench::BenchPoints;
-use mixer_files::report::origin::Origin;
 use mixer_files::report::page;
 use mixer_files::report::study::Study;
 use mixer_identify::identified::Settings;
@@ -88,25 +87,22 @@ pub struct Output {
 
 impl Checked {
     /// The report with bench files of the pair, read as `identify` read them, as markup to show.
-    pub fn report(&self, bench: &Files, today: String) -> Report {
-        self.draw(bench, today, |study, bench, origin, refused| {
-            let page::Content { body, model } = page::content(study, bench, origin);
+    pub fn report(&self, bench: &Files) -> Report {
+        self.draw(bench, |study, bench, digest, refused| {
+            let page::Content { body, model } = page::content(study, bench, digest);
             Report { body, model, refused }
         })
     }
 
     /// The same as a whole page, as `cargo mixer report` writes it.
-    pub fn page(&self, bench: &Files, today: String) -> String {
-        self.draw(bench, today, |study, bench, origin, _| {
-            page::page(study, bench, origin)
-        })
+    pub fn page(&self, bench: &Files) -> String {
+        self.draw(bench, |study, bench, digest, _| page::page(study, bench, digest))
     }
 
     fn draw<T>(
         &self,
         bench: &Files,
-        today: String,
-        draw: impl FnOnce(&Study<'_>, Option<&BenchPoints>, &Origin, String) -> T,
+        draw: impl FnOnce(&Study<'_>, Option<&BenchPoints>, Option<&str>, String) -> T,
     ) -> T {
         let texts = bench.texts();
         let shown = match texts.as_slice() {
@@ -117,14 +113,11 @@ impl Checked {
             Ok(bench) => (bench, String::new()),
             Err(refused) => (None, refused),
         };
-        let origin = Origin {
-            sha256: Some(sha256(self.compiled.source.text.as_bytes())),
-            date: Some(today),
-        };
+        let digest = sha256(self.compiled.source.text.as_bytes());
         draw(
             &Study::new(&self.compiled, None),
             bench.as_ref(),
-            &origin,
+            Some(&digest),
             refused,
         )
     }

@@ -45,8 +45,8 @@ impl Desk {
 
     /// Runs a command that makes a pair or an airframe: see [`make::make`]. `names` and `texts` are the
     /// files that the words name.
-    pub fn make(&self, words: Vec<String>, names: Vec<String>, texts: Vec<String>, today: String) -> String {
-        json(&make::make(&words, &Files::new(names, texts), today))
+    pub fn make(&self, words: Vec<String>, names: Vec<String>, texts: Vec<String>) -> String {
+        json(&make::make(&words, &Files::new(names, texts)))
     }
 
     /// A line of the command line as words: see [`make::words`].
@@ -72,13 +72,13 @@ impl Desk {
     }
 
     /// The report, and what of the bench files could not be shown in it: see [`Checked::report`].
-    pub fn report(&self, names: Vec<String>, texts: Vec<String>, today: String) -> String {
-        json(&self.ask(|checked| Ok(checked.report(&Files::new(names, texts), today))))
+    pub fn report(&self, names: Vec<String>, texts: Vec<String>) -> String {
+        json(&self.ask(|checked| Ok(checked.report(&Files::new(names, texts)))))
     }
 
     /// The report as a whole page: see [`Checked::page`].
-    pub fn page(&self, names: Vec<String>, texts: Vec<String>, today: String) -> String {
-        json(&self.ask(|checked| Ok(checked.page(&Files::new(names, texts), today))))
+    pub fn page(&self, names: Vec<String>, texts: Vec<String>) -> String {
+        json(&self.ask(|checked| Ok(checked.page(&Files::new(names, texts)))))
     }
 
     /// A file to save: see [`Checked::output`].

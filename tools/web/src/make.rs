@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use cargo_mixer::bench_args::said;
-use cargo_mixer::bench_files::Outside;
 use cargo_mixer::commands::identify::{IdentifyArgs, NoAnswer};
 use cargo_mixer::commands::import::ImportArgs;
 use cargo_mixer::commands::new::NewArgs;
@@ -123,20 +122,17 @@ impl Fault {
 ///
 /// # Errors
 /// Words that are none of the command's, files that cannot serve.
-pub fn make(words: &[String], files: &Files, today: String) -> Result<Made, Vec<Fault>> {
+pub fn make(words: &[String], files: &Files) -> Result<Made, Vec<Fault>> {
     let words = ["cargo mixer"]
         .into_iter()
         .chain(words.iter().map(String::as_str));
     let command = Make::try_parse_from(words).map_err(|error| vec![Fault::usage(&error)])?;
-    let outside = Outside {
-        text: &|path| files.text(path),
-        today: Some(today),
-    };
+    let reader = |path: &Path| files.text(path);
     let general = |message: String| vec![Fault::general(message)];
     let refused = |refusals: Vec<Refusal>| refusals.iter().map(Fault::of).collect::<Vec<_>>();
     match command {
         Make::Identify(args) => {
-            let (answer, notes) = args.answer(&outside).map_err(|none| match none {
+            let (answer, notes) = args.answer(&reader).map_err(|none| match none {
                 NoAnswer::Usage(message) => general(message.to_owned()),
                 NoAnswer::Refused(refusals) => refused(refusals),
             })?;
@@ -144,7 +140,7 @@ pub fn make(words: &[String], files: &Files, today: String) -> Result<Made, Vec<
             Ok(answered(text.map_err(general)?, &answer, notes))
         }
         Make::Predict(args) => {
-            let answer = args.answer(&outside).map_err(refused)?;
+            let answer = args.answer(&reader).map_err(refused)?;
             let text = tables_or_airframe(&answer, args.frame.as_ref(), args.output.as_deref());
             Ok(answered(text.map_err(general)?, &answer, Vec::new()))
         }

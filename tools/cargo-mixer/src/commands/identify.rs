@@ -6,8 +6,8 @@ use std::path::PathBuf;
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use mixer_compiler::airframe::Basis;
+use mixer_identify::bench::Preparation;
 use mixer_identify::bench::read::refused_told;
-use mixer_identify::bench::{Preparation, date};
 use mixer_identify::fit::basis::ThrottleBox;
 use mixer_identify::fit::wishes::Wishes;
 use mixer_identify::identified::Settings;
@@ -15,7 +15,7 @@ use mixer_identify::refusal::Refusal;
 use mixer_identify::texts::{Answer, Prediction, identify};
 
 use crate::bench_args::{AirArgs, ReadingArgs, exponents, positive, throttle_box};
-use crate::bench_files::Outside;
+use crate::bench_files::{self, Reader};
 use crate::commands::predict::{self, RotorArgs};
 use crate::frame_args::FrameArgs;
 use crate::pack::PackArgs;
@@ -93,9 +93,6 @@ pub struct IdentifyArgs {
     /// What is known of the rotors beside the run
     #[command(flatten)]
     pub rotors: RotorArgs,
-    /// Date of the measurement, YYYY-MM-DD [default: from the file names].
-    #[arg(long, value_name = "DATE", value_parser = date_given)]
-    pub date: Option<String>,
 }
 
 /// `--basis`; none is to be chosen by cross-validation.
@@ -127,7 +124,6 @@ impl IdentifyArgs {
         Settings {
             preparation: Preparation {
                 torque_may_lack: self.prior.is_some(),
-                date: self.date.clone(),
                 air: self.air.air(),
                 ..settings.preparation
             },
@@ -160,15 +156,15 @@ impl IdentifyArgs {
     ///
     /// # Errors
     /// Arguments that do not fit together, files that cannot serve.
-    pub fn answer(&self, outside: &Outside<'_>) -> Result<(Answer<()>, Vec<String>), NoAnswer> {
+    pub fn answer(&self, reader: Reader<'_>) -> Result<(Answer<()>, Vec<String>), NoAnswer> {
         if self.prior.is_none() && self.rotors.is_given() {
             let message =
                 "what is known of one rotor alone belongs to --prior SINGLE.csv, which is not given";
             return Err(NoAnswer::Usage(message));
         }
-        let maps = outside.texts(&self.files);
+        let maps = self.files.iter().map(|path| reader(path)).collect::<Vec<_>>();
         let runs = [&self.prior, &self.lower_out, &self.upper_out];
-        let [prior, upper, lower] = runs.map(|run| run.as_deref().map(outside.text));
+        let [prior, upper, lower] = runs.map(|run| run.as_deref().map(reader));
         let settings = self.settings();
         if let Some(single) = &prior {
             let held = self.reading.rpm_at_full.is_some();
@@ -179,9 +175,9 @@ impl IdentifyArgs {
                 run,
                 map: settings,
                 known: self.rotors.known(self.reference_voltage, exponents),
-                wishes: self.rotors.wishes(self.throttle, held, &self.pack, outside),
+                wishes: self.rotors.wishes(self.throttle, held, &self.pack),
             };
-            let answer = self.rotors.predict(single, &maps, &how, outside);
+            let answer = self.rotors.predict(single, &maps, &how, reader);
             return Ok((answer.map_err(NoAnswer::Refused)?.texts(), Vec::new()));
         }
         let answer =
@@ -203,17 +199,10 @@ pub fn run(args: &IdentifyArgs) -> Done {
     };
     let runs = [&args.prior, &args.lower_out, &args.upper_out];
     place.check(args.files.iter().chain(runs.into_iter().flatten()))?;
-    let (answer, notes) = args
-        .answer(&Outside::of_the_machine())
-        .map_err(|none| match none {
-            NoAnswer::Usage(message) => bad_usage(message),
-            NoAnswer::Refused(refusals) => place.refused(&refusals),
-        })?;
+    let (answer, notes) = args.answer(&bench_files::text).map_err(|none| match none {
+        NoAnswer::Usage(message) => bad_usage(message),
+        NoAnswer::Refused(refusals) => place.refused(&refusals),
+    })?;
     notes.iter().for_each(print_note);
     place.write(&answer, args.verbose)
-}
-
-fn date_given(text: &str) -> Result<String, String> {
-    let date = date::date_in(text).filter(|date| date == text);
-    date.ok_or_else(|| format!("{text:?} is not a date YYYY-MM-DD"))
 }

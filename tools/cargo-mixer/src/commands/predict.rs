@@ -18,7 +18,7 @@ use mixer_identify::texts::{self, Answer, Prediction, Text};
 use crate::Done;
 use crate::bench_args;
 use crate::bench_args::{AirArgs, positive, pwm_range, role, sign_choice, throttle_box, within};
-use crate::bench_files::Outside;
+use crate::bench_files::{self, Reader};
 use crate::frame_args::FrameArgs;
 use crate::pack::PackArgs;
 use crate::place::Place;
@@ -154,18 +154,11 @@ impl RotorArgs {
     }
 
     /// What is wished of the pair.
-    pub(crate) fn wishes(
-        &self,
-        throttle: Option<ThrottleBox>,
-        closed_loop: bool,
-        pack: &PackArgs,
-        outside: &Outside<'_>,
-    ) -> Wishes {
+    pub(crate) fn wishes(&self, throttle: Option<ThrottleBox>, closed_loop: bool, pack: &PackArgs) -> Wishes {
         Wishes {
             spacing_ratio: self.ratio(),
             closed_loop,
             throttle,
-            date: outside.today.clone(),
             pack_v: pack.range_v(),
         }
     }
@@ -176,9 +169,9 @@ impl RotorArgs {
         single: &Text,
         maps: &[Text],
         how: &Prediction,
-        outside: &Outside<'_>,
+        reader: Reader<'_>,
     ) -> Result<Answer<Predicted>, Vec<Refusal>> {
-        let lower = self.lower_single.as_deref().map(outside.text);
+        let lower = self.lower_single.as_deref().map(reader);
         texts::predict(single, lower.as_ref(), maps, how)
     }
 
@@ -214,17 +207,16 @@ impl PredictArgs {
     ///
     /// # Errors
     /// Files that cannot serve.
-    pub fn answer(&self, outside: &Outside<'_>) -> Result<Answer<Predicted>, Vec<Refusal>> {
+    pub fn answer(&self, reader: Reader<'_>) -> Result<Answer<Predicted>, Vec<Refusal>> {
         let held = self.rpm_at_full.is_some();
         let exponents = exponents(self.voltage_exponent, held);
         let how = Prediction {
             run: self.settings(),
             map: Settings::default(),
             known: self.rotors.known(self.reference_voltage, exponents),
-            wishes: self.rotors.wishes(self.throttle, held, &self.pack, outside),
+            wishes: self.rotors.wishes(self.throttle, held, &self.pack),
         };
-        self.rotors
-            .predict(&(outside.text)(&self.single), &[], &how, outside)
+        self.rotors.predict(&reader(&self.single), &[], &how, reader)
     }
 }
 
@@ -242,7 +234,7 @@ pub fn run(args: &PredictArgs) -> Done {
         json: args.json,
     };
     place.check(args.rotors.lower_single.iter().chain([&args.single]))?;
-    let answer = args.answer(&Outside::of_the_machine());
+    let answer = args.answer(&bench_files::text);
     let answer = answer.map_err(|refusals| place.refused(&refusals))?;
     place.write(&answer, false)
 }

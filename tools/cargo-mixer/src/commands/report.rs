@@ -7,7 +7,6 @@ use std::process::ExitCode;
 
 use mixer_compiler::Compiled;
 use mixer_files::report::bench::BenchPoints;
-use mixer_files::report::origin::Origin;
 use mixer_files::report::page;
 use mixer_files::report::study::{Flown, Study};
 use mixer_files::review::Options;
@@ -17,8 +16,7 @@ use sha2::{Digest as _, Sha256};
 
 use super::review::{mass, review};
 use crate::bench_args::{ReadingArgs, quantity};
-use crate::bench_files::Outside;
-use crate::today::today;
+use crate::bench_files;
 use crate::{Done, file, print_error};
 
 /// Writes one self-contained page about an airframe: its layout, maps, authority, comparison and
@@ -97,7 +95,7 @@ pub fn run(args: &ReportArgs) -> Done {
     let bench = match args.bench.as_slice() {
         [] => None,
         files => {
-            let texts = Outside::of_the_machine().texts(files);
+            let texts = bench_files::texts(files);
             Some(bench_points(&compiled, &texts, args.reading.settings()).map_err(print_error)?)
         }
     };
@@ -110,18 +108,11 @@ pub fn run(args: &ReportArgs) -> Done {
         .as_deref()
         .map(|log| args.flown(log, &compiled))
         .transpose()?;
-    let page = page::page(&study, bench.as_ref(), &origin(&args.airframe));
+    let digest = mixer_facts::input::read_small(&args.airframe)
+        .ok()
+        .map(|bytes| sha256(&bytes));
+    let page = page::page(&study, bench.as_ref(), digest.as_deref());
     file::save(&args.output, &page).map_err(print_error)
-}
-
-/// The origin of a page that is made now of this file.
-fn origin(airframe: &Path) -> Origin {
-    Origin {
-        sha256: mixer_facts::input::read_small(airframe)
-            .ok()
-            .map(|bytes| sha256(&bytes)),
-        date: today(),
-    }
 }
 
 /// The digest of a file's bytes in hexadecimal, as `sha256sum` prints it.

@@ -86,7 +86,6 @@ fn in_shell(command: &str, place: &Path) -> Output {
         .stdin(Stdio::null());
     shell
         .env("LC_ALL", "C")
-        .env("SOURCE_DATE_EPOCH", "0")
         .env_remove("RUSTC");
     shell.output().unwrap()
 }

@@ -1,7 +1,7 @@
 //! Fits of the coaxial maps of `MIXER_BENCH_DATA` are what a careful user has: none may raise a false
 //! alarm, and the mistakes that the rules on rotors are for must be told.
 
-use cargo_mixer::bench_files::{Outside, read_one};
+use cargo_mixer::bench_files::{self, read_one};
 use cargo_mixer::commands::predict::PredictArgs;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -178,7 +178,7 @@ fn no_prediction_of_a_real_run_warns() {
         let arguments = Arguments::try_parse_from(["predict".as_ref(), run.as_os_str()]);
         let arguments = arguments.unwrap_or_else(|error| panic!("{error}")).predict;
         let predicted = arguments
-            .answer(&Outside::of_the_machine())
+            .answer(&bench_files::text)
             .unwrap_or_else(|refusals| panic!("{refusals:?}"));
         for sentence in &predicted.found.warnings {
             told.sentence(sentence, run);

@@ -8,7 +8,6 @@ use std::{env, fs};
 
 use mixer_compiler::{Compiled, Source, compile};
 use mixer_files::report::data::{Data, sweep};
-use mixer_files::report::origin::Origin;
 use mixer_files::report::page::{SECTIONS, page};
 use mixer_files::report::study::Study;
 use roxmltree::{Document, Node, ParsingOptions};
@@ -85,7 +84,7 @@ fn pages_are_well_formed_and_complete() {
     for compiled in airframes().into_iter().chain(folder("tests/fixtures")) {
         let name = &compiled.airframe.name;
         let study = Study::new(&compiled, None);
-        let page = page(&study, None, &Origin::default());
+        let page = page(&study, None, None);
         assert!(page.len() < LARGEST_PAGE, "{name}: {} bytes", page.len());
         let document = parsed(&page);
         let sections: Vec<(&str, Node)> = named(document.root(), "section")
@@ -128,7 +127,7 @@ fn pages_are_well_formed_and_complete() {
 #[test]
 fn pages_refer_to_nothing_outside() {
     for compiled in airframes() {
-        let page = page(&Study::new(&compiled, None), None, &Origin::default());
+        let page = page(&Study::new(&compiled, None), None, None);
         let document = parsed(&page);
         let anchors: BTreeSet<&str> = document.descendants().filter_map(|n| n.attribute("id")).collect();
         for node in document.descendants() {
@@ -178,7 +177,7 @@ fn text_of_the_airframe_is_no_markup() {
     let text = fs::read_to_string(root().join("airframes/single-pair.toml")).unwrap();
     let text = text.replace("One coaxial pair", "<script>alert(1)</script> & <b>");
     let compiled = compile_text(&text);
-    let page = page(&Study::new(&compiled, None), None, &Origin::default());
+    let page = page(&Study::new(&compiled, None), None, None);
     let document = parsed(&page);
     let lead = document
         .descendants()

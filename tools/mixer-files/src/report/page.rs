@@ -24,7 +24,6 @@ use crate::report::layout;
 use crate::report::level;
 use crate::report::maps;
 use crate::report::number::{shortest, significant};
-use crate::report::origin::Origin;
 use crate::report::plots;
 use crate::report::study::Study;
 use crate::report::surface;
@@ -75,8 +74,8 @@ pub struct Content {
 }
 
 /// The whole page.
-pub fn page(study: &Study<'_>, bench: Option<&BenchPoints>, origin: &Origin) -> String {
-    let Content { body, model } = content(study, bench, origin);
+pub fn page(study: &Study<'_>, bench: Option<&BenchPoints>, digest: Option<&str>) -> String {
+    let Content { body, model } = content(study, bench, digest);
     let title = html! { title { (printable(&study.compiled.airframe.name)) ": coaxial mixer" } };
     // The head's elements without content are closed, as XML demands.
     format!(
@@ -92,7 +91,7 @@ pub fn page(study: &Study<'_>, bench: Option<&BenchPoints>, origin: &Origin) -> 
 }
 
 /// What stands in the page, and what its script needs.
-pub fn content(study: &Study<'_>, bench: Option<&BenchPoints>, origin: &Origin) -> Content {
+pub fn content(study: &Study<'_>, bench: Option<&BenchPoints>, digest: Option<&str>) -> Content {
     let compiled = study.compiled;
     let airframe = &compiled.airframe;
     let errors = Effort::BOTH.map(|effort| maps::error_field(study, effort));
@@ -115,7 +114,7 @@ pub fn content(study: &Study<'_>, bench: Option<&BenchPoints>, origin: &Origin) 
         p.lead { (printable(&airframe.description)) }
         nav id="contents" aria-label="Contents" { @for (anchor, title) in SECTIONS { a href={ "#" (anchor) } { (title) } " " } }
         (warnings(study, bench))
-        (table::summary(study, &facts, origin))
+        (table::summary(study, &facts, digest))
         @for (anchor, title) in SECTIONS {
             section id=(anchor) { h2 { (title) } (section(anchor)) }
         }

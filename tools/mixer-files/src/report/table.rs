@@ -9,7 +9,6 @@ use crate::report::bench::BenchPoints;
 use crate::report::comparison::{Answer, Comparison};
 use crate::report::effort::Effort;
 use crate::report::number::{fixed, range, shortest, significant};
-use crate::report::origin::Origin;
 use crate::report::rows::table;
 use crate::report::study::{Flown, Study};
 
@@ -17,12 +16,10 @@ use crate::report::study::{Flown, Study};
 const SHOWN_ROWS: usize = 9;
 
 /// What an engineer asks first, and what the page was made from.
-pub fn summary(study: &Study<'_>, facts: &[Fact], origin: &Origin) -> Markup {
+pub fn summary(study: &Study<'_>, facts: &[Fact], digest: Option<&str>) -> Markup {
     let file = ("Airframe file", printable(&study.compiled.source.file_name()));
-    let date = origin.date.iter().map(|date| ("Date", date.clone()));
-    let hash = origin.sha256.iter();
-    let hash = hash.map(|hash| ("SHA-256 of the file", hash.clone()));
-    let more: Vec<(&str, String)> = [file].into_iter().chain(date).chain(hash).collect();
+    let hash = digest.map(|digest| ("SHA-256 of the file", digest.to_owned()));
+    let more: Vec<(&str, String)> = [file].into_iter().chain(hash).collect();
     let asked_first = facts.iter().filter(|fact| fact.in_verdict && !fact.is_cost());
     self::facts(asked_first, &more)
 }

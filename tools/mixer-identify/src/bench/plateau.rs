@@ -22,15 +22,17 @@ pub fn is_streaming(samples: &[Sample]) -> bool {
     2 * in_plateaus > samples.len()
 }
 
-/// One mean per plateau, and the number of rows dropped. `settle` is the part of a plateau that is
-/// left out at its beginning, in [0, 1).
-pub fn means(samples: &[Sample], settle: f64) -> (Vec<Sample>, usize) {
+/// Part of each plateau that is left to settle.
+const SETTLE: f64 = 0.33;
+
+/// One mean per plateau without its beginning, and the number of rows dropped.
+pub fn means(samples: &[Sample]) -> (Vec<Sample>, usize) {
     let mut points = Vec::new();
     let mut dropped = 0;
     for run in runs(samples) {
         let skip = match run.len() {
             n if n < PLATEAU_ROWS => n,
-            n => settling(n, settle),
+            n => settling(n),
         };
         dropped += skip;
         let rows = &run[skip..];
@@ -56,10 +58,10 @@ pub fn means(samples: &[Sample], settle: f64) -> (Vec<Sample>, usize) {
 }
 
 /// The rows that settle of a plateau of `rows`; none of a few.
-pub(super) fn settling(rows: usize, settle: f64) -> usize {
+pub(super) fn settling(rows: usize) -> usize {
     match rows {
         n if n < PLATEAU_ROWS => 0,
-        n => ((n as f64 * settle).ceil() as usize).min(n - 1),
+        n => ((n as f64 * SETTLE).ceil() as usize).min(n - 1),
     }
 }
 
@@ -107,7 +109,7 @@ mod tests {
         rows.extend((10..13).map(|k| sample(k, 0.2 + 0.01 * k as f64, 50.0))); // a ramp
         rows.extend((13..23).map(|k| sample(k, 0.5, 2.0)));
         assert!(is_streaming(&rows));
-        let (points, dropped) = means(&rows, 0.4);
+        let (points, dropped) = means(&rows);
         let seen: Vec<(u64, f64, f64)> = points
             .iter()
             .map(|p| (p.line, (1e6 * p.throttle[0]).round() / 1e6, p.thrust.whole))

@@ -26,9 +26,10 @@ use crate::refusal::Refusal;
 use crate::statistics::extent;
 
 /// How to find a sign.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum SignChoice {
     /// From the data, reported.
+    #[default]
     Auto,
     /// These factors, for the upper and the lower rotor's column; the first for a total.
     Given([f64; 2]),
@@ -46,7 +47,7 @@ impl fmt::Display for SignChoice {
 }
 
 /// Signs of both channels.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct SignPolicy {
     /// Of thrust.
     pub thrust: SignChoice,

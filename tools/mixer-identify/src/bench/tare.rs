@@ -39,11 +39,10 @@ pub(super) struct Tare {
 }
 
 /// Finds the offsets of the load cells in the stops, rows that are `commanded_off`, and takes them off
-/// where that is asked for. `settle` is that of plateaus.
+/// where that is asked for.
 pub(super) fn examine(
     samples: &mut [Sample],
     commanded_off: impl Fn(&Sample) -> bool,
-    settle: f64,
     takes_off: bool,
 ) -> Tare {
     let columns = CELLS.map(|(_, _, _, cell)| samples.iter_mut().map(|s| *cell(s)).collect::<Vec<f64>>());
@@ -60,7 +59,7 @@ pub(super) fn examine(
             rms(about.filter(|x| x.is_finite())) > NOISE * greatest[cell.2]
         })
     };
-    let mut rests = at_rest(samples, commanded_off, settle);
+    let mut rests = at_rest(samples, commanded_off);
     rests.retain(|rows| !scatters(rows));
     let mut tare = Tare::default();
     let mut whole_told = [false; 2];
@@ -126,7 +125,7 @@ pub(super) fn examine(
 
 /// The rows of each stop in which every speed is 0 or, without speeds, which are several; of a streaming
 /// log without those that settle.
-fn at_rest(samples: &[Sample], commanded_off: impl Fn(&Sample) -> bool, settle: f64) -> Vec<Vec<usize>> {
+fn at_rest(samples: &[Sample], commanded_off: impl Fn(&Sample) -> bool) -> Vec<Vec<usize>> {
     let mut stops: Vec<Range<usize>> = Vec::new();
     for k in (0..samples.len()).filter(|&k| commanded_off(&samples[k])) {
         match stops.last_mut().filter(|stop| stop.end == k) {
@@ -139,7 +138,7 @@ fn at_rest(samples: &[Sample], commanded_off: impl Fn(&Sample) -> bool, settle: 
     let stands = |k: &usize| (0..2).all(|rotor| !told[rotor] || samples[*k].speed[rotor] == 0.0);
     let least = if told == [false; 2] { SEVERAL } else { 1 };
     let settled = stops.into_iter().map(|stop| {
-        let start = stop.start + plateau::settling(stop.len(), settle);
+        let start = stop.start + plateau::settling(stop.len());
         (start..stop.end).filter(stands).collect::<Vec<usize>>()
     });
     settled.filter(|rows| rows.len() >= least).collect()
@@ -218,7 +217,7 @@ mod tests {
             let all: Vec<Row> = [before, &turning, after].concat().iter().map(speeds).collect();
             for taken in [false, true] {
                 let mut rows = samples(&all);
-                let tare = examine(&mut rows, |s| s.throttle[0] <= 0.0, 0.33, taken);
+                let tare = examine(&mut rows, |s| s.throttle[0] <= 0.0, taken);
                 let told = tare.warnings.join("; ");
                 if !taken {
                     assert!(

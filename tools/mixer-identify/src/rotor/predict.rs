@@ -63,8 +63,6 @@ pub struct Wishes {
     pub closed_loop: bool,
     /// The box to command, or nothing for 0.2 to 1; its least idle is raised where the map asks for it.
     pub throttle: Option<ThrottleBox>,
-    /// `YYYY-MM-DD`, for the comment of the tables.
-    pub date: Option<String>,
     /// Voltage of the empty and of the full pack, V, or nothing for what the run had.
     pub pack_v: Option<[f64; 2]>,
 }
@@ -74,8 +72,6 @@ pub struct Wishes {
 pub struct Predicted {
     /// Program and version.
     pub generator: String,
-    /// The day of the prediction, `YYYY-MM-DD`.
-    pub date: Option<String>,
     /// The map.
     pub pair: PredictedPair,
     /// The runs of the upper and of the lower rotor alone.
@@ -182,7 +178,6 @@ pub fn correct(
     }
     Ok(Predicted {
         generator: format!("cargo mixer predict {}", env!("CARGO_PKG_VERSION")),
-        date: wishes.date.clone(),
         pair,
         reference_v: runs[0].voltage_v,
         pack_v: wishes.pack_v,

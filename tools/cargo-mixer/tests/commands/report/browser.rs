@@ -8,7 +8,6 @@ use std::process::Command;
 use std::{env, fs};
 
 use mixer_compiler::Compiled;
-use mixer_files::report::origin::Origin;
 use mixer_files::report::page::page;
 use mixer_files::report::study::Study;
 
@@ -132,7 +131,7 @@ fn pages_open_without_errors_and_show_values() {
     for compiled in shown() {
         let name = compiled.airframe.name.clone();
         let study = Study::new(&compiled, None);
-        let html = page(&study, None, &Origin::default());
+        let html = page(&study, None, None);
         let path = scratch(&format!("{name}.html"));
         fs::write(&path, html.replace("</body>", POINTER)).unwrap();
         let (dom, messages) = open(&browser, &path);
@@ -177,7 +176,7 @@ fn pages_open_without_errors_and_show_values() {
 
     // The test can fail: a broken script and a reference to outside are both told.
     let broken = scratch("broken.html");
-    let html = page(&Study::new(&shown()[0], None), None, &Origin::default());
+    let html = page(&Study::new(&shown()[0], None), None, None);
     fs::write(
         &broken,
         html.replace("document.getElementById(\"model\")", "document.nothing.there"),
@@ -205,7 +204,7 @@ fn a_check_is_kept_where_the_content_is_shown_again() {
         return;
     };
     let compiled = compiled(&root().join("airframes/isae-x8.toml"));
-    let html = page(&Study::new(&compiled, None), None, &Origin::default());
+    let html = page(&Study::new(&compiled, None), None, None);
     let path = scratch("again.html");
     fs::write(&path, html.replace("</body>", AGAIN)).unwrap();
     let (dom, messages) = open(&browser, &path);
@@ -224,14 +223,11 @@ fn pages_fit_their_window_with_type_that_can_be_read() {
     let Some(browser) = wanted_browser() else {
         return;
     };
-    let origin = Origin {
-        sha256: Some("0123456789abcdef".repeat(4)),
-        date: None,
-    };
+    let digest = "0123456789abcdef".repeat(4);
     for compiled in shown() {
         let name = compiled.airframe.name.clone();
         let path = scratch(&format!("{name}-framed.html"));
-        fs::write(&path, page(&Study::new(&compiled, None), None, &origin)).unwrap();
+        fs::write(&path, page(&Study::new(&compiled, None), None, Some(&digest))).unwrap();
         let framed = path.file_name().unwrap().to_string_lossy();
         for width in ["390", "1400"] {
             let frame = scratch(&format!("{name}-{width}.html"));

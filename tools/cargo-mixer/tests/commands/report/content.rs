@@ -22,7 +22,7 @@ fn section<'a, 'd>(document: &'d Document<'a>, id: &str) -> Node<'d, 'a> {
 fn authority_is_shown_at_the_lowest_voltage_and_with_a_rotor_out() {
     let of = |name: &str| {
         let compiled = compiled(&root().join(format!("airframes/{name}.toml")));
-        let page = page(&Study::new(&compiled, None), None, &Origin::default());
+        let page = page(&Study::new(&compiled, None), None, None);
         let document = parsed(&page);
         let section = section(&document, "authority");
         let curves: Vec<String> = section
@@ -46,7 +46,7 @@ fn authority_is_shown_at_the_lowest_voltage_and_with_a_rotor_out() {
 
 #[test]
 fn captions_stand_below() {
-    let page = page(&Study::new(&x8(), None), None, &Origin::default());
+    let page = page(&Study::new(&x8(), None), None, None);
     let document = parsed(&page);
     for figure in named(document.root(), "figure") {
         let last = figure.children().rfind(Node::is_element).unwrap();
@@ -65,7 +65,7 @@ fn a_flight_is_shown_over_the_model() {
         lines: vec![("thrust", "model over measured 1.02".to_owned())],
         throttles: vec![[0.4, 0.5], [0.9, 0.2], [0.45, 0.5]],
     });
-    let page = page(&study, None, &Origin::default());
+    let page = page(&study, None, None);
     let document = parsed(&page);
     assert_eq!(points(&document, "flown-dot"), [3, 3]);
     let text = text_of(document.root());
@@ -96,7 +96,7 @@ fn residuals_are_mapped() {
         outside: vec![point(0.05, 9.0)],
         ..BenchPoints::default()
     };
-    let page = page(&study, Some(&bench), &Origin::default());
+    let page = page(&study, Some(&bench), None);
     assert!(page.contains("1 more lie below the idle of 0.1: small"));
     let document = parsed(&page);
     let maps: Vec<Node> = named(document.root(), "svg")
@@ -139,7 +139,7 @@ fn figures_have_data_and_are_reached_by_keyboard() {
     for compiled in airframes() {
         let name = &compiled.airframe.name;
         let study = Study::new(&compiled, None);
-        let page = page(&study, None, &Origin::default());
+        let page = page(&study, None, None);
         let document = parsed(&page);
         let is_link = |node: &Node| node.has_attribute("download");
         let of_all: Vec<&str> = named(document.root(), "figure")
@@ -215,7 +215,7 @@ fn hover_is_marked_and_compared() {
         "{}",
         study.thrust_n
     );
-    let page = page(&study, None, &Origin::default());
+    let page = page(&study, None, None);
     let document = parsed(&page);
     let marked = |id: &str| {
         let marks = section(&document, id).descendants();
@@ -229,6 +229,6 @@ fn hover_is_marked_and_compared() {
         assert!(marked(id) > 0, "{id}");
     }
     let unknown = x8();
-    let page = super::page(&Study::new(&unknown, None), None, &Origin::default());
+    let page = super::page(&Study::new(&unknown, None), None, None);
     assert!(page.contains("add [vehicle] mass_kg") && !page.contains("class=\"mark-point\""));
 }

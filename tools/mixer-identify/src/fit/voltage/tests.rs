@@ -5,7 +5,6 @@ fn bench(kind: Kind, points: Vec<Point>) -> Bench {
     Bench {
         file: "b.csv".into(),
         format: "plain".into(),
-        date: None,
         kind,
         rows: points.len(),
         start_stop_rows: 0,
