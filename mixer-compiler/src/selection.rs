@@ -49,16 +49,8 @@ pub(crate) fn select(
     if chosen.holds() {
         return Ok(chosen);
     }
-    let meets = |airframe: &Airframe| {
-        let pair = PairMap::new(&airframe.pair, &airframe.throttle);
-        choose(airframe, &pair, corrections).holds()
-    };
-    Err(vec![refusal::tolerance(
-        airframe,
-        chosen.map.inverse.evaluator,
-        &chosen.certificate,
-        meets,
-    )])
+    let evaluator = chosen.map.inverse.evaluator;
+    Err(vec![refusal::tolerance(airframe, evaluator, &chosen.certificate)])
 }
 
 impl Selected {

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use mixer_facts::params::Stack;
 use mixer_files::frame::{Frame, NewFrame};
+use mixer_files::params::Stack;
 
 use crate::bench_args::{quantity, words};
 

@@ -4,13 +4,11 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use mixer_compiler::diagnostic::{Diagnostics, printable};
-use serde::Serialize;
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use crate::check::{Checked, refusal as refused};
 use crate::checklist::Checklist;
 use crate::input::{Refusal, errors, fault, read};
-use crate::params::settings::Stacks;
 use crate::terminal::{Done, print, print_error, print_note, show};
 
 /// Validates and compiles an airframe file and says what came of it
@@ -21,21 +19,12 @@ pub struct CheckArgs {
     /// Print JSON; faults are then listed under "errors" on stdout as well as on stderr
     #[arg(long)]
     json: bool,
-    /// Print every number: M, M+, proof, costs, parameters of flight stacks, check list for the bench
+    /// Print every number: M, M+, proof, costs, check list for the bench
     #[arg(long, conflicts_with = "json")]
     verbose: bool,
     /// Exit with status 1 where there is a warning
     #[arg(long)]
     deny_warnings: bool,
-}
-
-/// Keys of the JSON beside the facts.
-#[derive(Serialize)]
-struct More {
-    #[serde(flatten)]
-    stacks: Stacks,
-    /// Time of the whole compilation, ms.
-    compile_ms: f64,
 }
 
 /// Runs the command.
@@ -57,12 +46,11 @@ pub fn run(args: &CheckArgs) -> Done {
         }
     };
     tell(&checked.warnings, args.verbose);
-    let stacks = Stacks::new(&checked.compiled);
     print(&if args.json {
-        pretty(&checked.json(More { stacks, compile_ms }))
+        pretty(&checked.json(json!({ "compile_ms": compile_ms })))
     } else if args.verbose {
         let (report, list) = (checked.report(), Checklist(&checked.compiled));
-        format!("{report}{stacks}{list}compiled in     {compile_ms:.0} ms\n")
+        format!("{report}{list}compiled in     {compile_ms:.0} ms\n")
     } else {
         let file = printable(&args.airframe.display().to_string());
         format!(

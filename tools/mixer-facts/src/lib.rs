@@ -19,7 +19,6 @@ pub mod cost;
 mod facts;
 pub mod hover;
 pub mod input;
-pub mod params;
 pub mod terminal;
 
 pub use check::{Checked, check, compare, refusal};

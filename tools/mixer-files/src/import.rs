@@ -23,8 +23,8 @@ use mixer_compiler::{Source, symmetry};
 use mixer_facts::checklist;
 use mixer_identify::pair_file::PairFile;
 
-use mixer_facts::params::bench_pulses;
-use mixer_facts::params::frames::COAXIAL_MIXER;
+use crate::params::bench_pulses;
+use crate::params::frames::COAXIAL_MIXER;
 pub use outputs::USUAL_US;
 use parameters::Parameters;
 use rotors::Imported;

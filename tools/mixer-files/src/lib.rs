@@ -6,8 +6,8 @@
 //! ```
 //! use mixer_compiler::Source;
 //! use mixer_files::frame::{Frame, NewFrame};
-//! use mixer_facts::params::{Options, params};
-//! use mixer_facts::params::Stack;
+//! use mixer_files::params::{Options, params};
+//! use mixer_files::params::Stack;
 //!
 //! let frame = NewFrame { arm_m: Some(0.45), ..NewFrame::of(Frame::X8) };
 //! let text = mixer_files::new::new(&frame, None).unwrap();
@@ -21,6 +21,7 @@ pub mod golden;
 pub mod import;
 pub mod library;
 pub mod new;
+pub mod params;
 pub mod report;
 pub mod review;
 pub mod schema;

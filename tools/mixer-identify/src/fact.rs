@@ -273,14 +273,9 @@ pub fn runs(pair: &Pair) -> impl Iterator<Item = (Turning, &Alone)> {
 
 fn of_alone(facts: &mut Facts, turning: Turning, alone: &Alone) {
     facts.table = turning.table();
-    let other = alone.other_at.map_or(String::new(), |level| {
-        format!(
-            ", of a map in which the other rotor turned at {level:.2}: taken off by the pair's polynomials"
-        )
-    });
     let (table, [from, to]) = (turning.table(), alone.measured);
     let text = format!(
-        "[{table}] from {}: {} points, throttle {from:.2} to {to:.2}{other}",
+        "[{table}] from {}: {} points, throttle {from:.2} to {to:.2}",
         alone.file, alone.points
     );
     facts.always("rotor out", text);

@@ -107,7 +107,7 @@ pub fn with_runs(
         two_signals(&benches)?;
         let pair = pair::identify(&benches, voltage.as_ref(), wishes)?;
         warnings.extend(pair.warnings.clone());
-        let of_runs = with_alone(pair, &benches, &runs, voltage.as_ref(), wishes, &mut warnings);
+        let of_runs = with_alone(pair, &runs, voltage.as_ref(), &mut warnings);
         Some(of_runs?)
     } else {
         only_single(&benches, voltage.as_ref())?;
@@ -141,20 +141,16 @@ pub fn with_runs(
     })
 }
 
-/// The pair with its rotors alone: from their runs, or from rows of the map where the user wishes
-/// it.
+/// The pair with its rotors alone, from their runs.
 fn with_alone(
     mut pair: Pair,
-    benches: &[Bench],
     runs: &[Option<Bench>; 2],
     voltage: Option<&Voltage>,
-    wishes: &Wishes,
     warnings: &mut Vec<String>,
 ) -> Result<Pair, Refusal> {
     for (run, turning) in runs.iter().zip([Turning::Upper, Turning::Lower]) {
         let found = match run {
             Some(run) => alone::identify(run, turning, &pair, voltage, warnings)?,
-            None if wishes.rotor_out_from_map => alone::from_map(benches, turning, &pair, voltage, warnings)?,
             None => continue,
         };
         match turning {

@@ -103,29 +103,6 @@ pub fn template(pairs: &[[f64; 2]], full_rpm: Option<f64>) -> String {
     text
 }
 
-/// A script for the RCbenchmark application (series 1780), pulse widths of throttle 0 and 1 in
-/// microseconds.
-pub fn rcbenchmark(pairs: &[[f64; 2]], [low, high]: [f64; 2]) -> String {
-    let pulse = |throttle: f64| (low + throttle * (high - low)).round();
-    let line = |[u, l]: &[f64; 2]| format!("    [{}, {}]", pulse(*u), pulse(*l));
-    let pairs: Vec<String> = pairs.iter().map(line).collect();
-    include_str!("plan/rcbenchmark.js")
-        .replace("@VERSION@", env!("CARGO_PKG_VERSION"))
-        .replace("@STOP@", &pulse(0.0).to_string())
-        .replace("@PAIRS@", &pairs.join(",\n"))
-}
-
-/// A script for the Flight Stand software, likewise.
-pub fn flight_stand(pairs: &[[f64; 2]], [low, high]: [f64; 2]) -> String {
-    let line = |[u, l]: &[f64; 2]| format!("    [{u:?}, {l:?}],");
-    let pairs: Vec<String> = pairs.iter().map(line).collect();
-    include_str!("plan/flight_stand.py")
-        .replace("@VERSION@", env!("CARGO_PKG_VERSION"))
-        .replace("@LOW@", &low.to_string())
-        .replace("@HIGH@", &high.to_string())
-        .replace("@PAIRS@", &pairs.join("\n"))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -155,29 +132,5 @@ mod tests {
                 "{levels}: {ours} {swept}"
             );
         }
-    }
-
-    #[test]
-    fn the_script_has_every_pair_in_microseconds() {
-        let pairs = plan(4, 0.1, 1.0);
-        let script = rcbenchmark(&pairs, [1100.0, 1900.0]);
-        let written = pairs.iter().map(|[u, l]| {
-            format!(
-                "[{}, {}]",
-                (1100.0 + 800.0 * u).round(),
-                (1100.0 + 800.0 * l).round()
-            )
-        });
-        let mut rest = script.as_str();
-        for pair in written {
-            let at = rest
-                .find(&pair)
-                .unwrap_or_else(|| panic!("{pair} in its order in\n{script}"));
-            rest = &rest[at + pair.len()..];
-        }
-        assert!(
-            script.contains("var stop = 1100;") && !script.contains('@'),
-            "{script}"
-        );
     }
 }

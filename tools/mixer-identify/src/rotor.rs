@@ -78,9 +78,6 @@ pub struct Alone {
     pub measured: [f64; 2],
     /// Points.
     pub points: usize,
-    /// Throttle at which the other rotor turned, where these are rows of a map; none where it stood
-    /// still.
-    pub other_at: Option<f64>,
 }
 
 /// Statistics of one channel, N or N m.

@@ -29,7 +29,6 @@ mod _native {
     use isolated_rotors::IsolatedTables;
     use mixer_compiler::{Compiled, Source};
     use mixer_facts::Checked;
-    use mixer_facts::params::settings::Stacks;
     use mixer_identify::refusal::Refusal;
     use mixer_identify::texts::Answer;
     use mixer_rt::Health;
@@ -138,7 +137,7 @@ mod _native {
 
         #[getter]
         fn json(&self) -> String {
-            self.checked.json(Stacks::new(&self.checked.compiled)).to_string()
+            self.checked.json(()).to_string()
         }
 
         /// Throttles, achieved wrenches, saturation.

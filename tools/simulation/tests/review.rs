@@ -5,7 +5,7 @@ mod wind;
 
 use clap::Parser;
 use mixer_compiler::{Compiled, Source};
-use mixer_facts::params::Stack;
+use mixer_files::params::Stack;
 use mixer_files::review::{Flight, Review, Series};
 use mixer_rt::Wrench;
 use nalgebra::{UnitQuaternion, Vector3};

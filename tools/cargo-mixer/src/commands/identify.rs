@@ -71,10 +71,6 @@ pub struct IdentifyArgs {
     /// A run of the lower rotor alone, likewise: `[pair.upper_out]`.
     #[arg(long, value_name = "RUN.csv")]
     pub upper_out: Option<PathBuf>,
-    /// Without such runs, take the map's rows in which one rotor turns at its lowest throttle (up
-    /// to 0.15) for the other one alone.
-    #[arg(long)]
-    pub rotor_out_from_map: bool,
     /// Exponent of thrust and of torque in (V / reference)^k, or one for both: brings the rows to
     /// the reference voltage and writes `[voltage]` where the files cannot tell one. 1.75 is the
     /// median of 104 motors with propellers.
@@ -135,7 +131,6 @@ impl IdentifyArgs {
                 voltage_exponent: self.voltage_exponent,
                 closed_loop: self.reading.rpm_at_full.is_some(),
                 pack_v: self.pack.range_v(),
-                rotor_out_from_map: self.rotor_out_from_map,
             },
             ..settings
         }

@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use mixer_facts::params::Stack;
-use mixer_facts::params::{Format, Options, params};
+use mixer_files::params::Stack;
+use mixer_files::params::{Format, Options, params};
 
 use crate::bench_args::{pwm_range, words};
 use crate::{Done, file, print_error};

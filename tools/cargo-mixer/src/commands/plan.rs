@@ -2,15 +2,14 @@
 
 use std::path::PathBuf;
 
-use clap::ValueEnum;
 use mixer_identify::bench::STOP_THROTTLE;
-use mixer_identify::plan::{CORRECTING, flight_stand, plan, rcbenchmark, template, with_rests};
+use mixer_identify::plan::{CORRECTING, plan, template, with_rests};
 
 use crate::Done;
 
 /// Writes the throttle pairs to run on the bench, in an order that averages temperature and sag
 ///
-/// `cargo mixer identify` reads what each format leaves. 5 x 5 levels suffice for the cubic basis,
+/// `cargo mixer identify` reads the file when it is filled in. 5 x 5 levels suffice for the cubic basis,
 /// 4 x 4 nearly; 3 x 3 do not determine it.
 #[derive(clap::Args, Debug)]
 pub struct PlanArgs {
@@ -27,33 +26,16 @@ pub struct PlanArgs {
     /// The highest throttle
     #[arg(long, value_name = "THROTTLE", default_value_t = 1.0, value_parser = throttle)]
     max: f64,
-    /// The format to write
-    #[arg(long, value_enum, default_value_t = Format::Template)]
-    format: Format,
     /// The speed controllers hold a speed: the speed at full throttle, revolutions per minute; the
-    /// template then has speeds to command
+    /// file then has speeds to command
     #[arg(long, value_name = "RPM", value_parser = crate::bench_args::positive)]
     rpm_at_full: Option<f64>,
-    /// Pulse widths of throttle 0 and 1 in a script, microseconds
-    #[arg(long, value_name = "LOW,HIGH", default_value = "1000,2000", value_parser = crate::bench_args::pwm_range)]
-    pwm_range: [f64; 2],
     /// The file to write, whole or not at all [default: standard output]
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     /// Overwrite the output if it is there
     #[arg(long)]
     force: bool,
-}
-
-/// The format of a plan.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Format {
-    /// A CSV to fill in.
-    Template,
-    /// A script for the RCbenchmark application (series 1780, escA above, escB below).
-    Rcbenchmark,
-    /// A Python script for the Flight Stand software's programming interface.
-    FlightStand,
 }
 
 fn throttle(text: &str) -> Result<f64, String> {
@@ -81,14 +63,6 @@ pub fn run(args: &PlanArgs) -> Done {
         None => CORRECTING.to_vec(),
     };
     let pairs = with_rests(&pairs);
-    if args.rpm_at_full.is_some() && args.format != Format::Template {
-        let message = "--rpm-at-full writes speeds into the template; the scripts command pulse widths";
-        return Err(crate::bad_usage(message));
-    }
-    let text = match args.format {
-        Format::Template => template(&pairs, args.rpm_at_full),
-        Format::Rcbenchmark => rcbenchmark(&pairs, args.pwm_range),
-        Format::FlightStand => flight_stand(&pairs, args.pwm_range),
-    };
+    let text = template(&pairs, args.rpm_at_full);
     crate::deliver(args.output.as_deref(), args.force, &text)
 }

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 
 use mixer_compiler::Source;
-use mixer_facts::params::Stack;
+use mixer_files::params::Stack;
 use mixer_files::review::{Flight, Review, Series};
 
 use crate::{bench_data, folder, measured, run_with};

@@ -84,9 +84,7 @@ fn in_shell(command: &str, place: &Path) -> Output {
         .args(["-c", &script])
         .current_dir(place)
         .stdin(Stdio::null());
-    shell
-        .env("LC_ALL", "C")
-        .env_remove("RUSTC");
+    shell.env("LC_ALL", "C").env_remove("RUSTC");
     shell.output().unwrap()
 }
 

@@ -4,7 +4,7 @@
 use super::outputs;
 use super::parameters::Parameters;
 use super::rotors::{Imported, Rotor, UPWARD};
-use mixer_facts::params::frames::{COAXIAL_MIXER, LAYER_M, Layer, motors};
+use crate::params::frames::{COAXIAL_MIXER, LAYER_M, Layer, motors};
 
 /// ArduPilot's defaults.
 const SPIN_MIN: f64 = 0.15;

@@ -11,7 +11,7 @@ use mixer_compiler::airframe::Spin;
 use super::outputs;
 use super::parameters::words;
 use super::rotors::{Imported, Rotor, UPWARD};
-use mixer_facts::params::frames::LAYER_M;
+use crate::params::frames::LAYER_M;
 
 /// Betaflight's coaxial tables (`mixerOctoX8`, `mixerY6`): roll, pitch, yaw; throttle is 1. The
 /// second half of the motors is under the first.

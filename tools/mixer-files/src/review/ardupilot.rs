@@ -3,7 +3,7 @@
 use crate::import::Stated;
 use mixer_compiler::atmosphere::{LAPSE, density};
 
-use mixer_facts::params::Stack;
+use crate::params::Stack;
 
 use crate::review::flight::Flight;
 use crate::review::log::{Channel, Log, Series};

@@ -1,7 +1,7 @@
 //! What a flight log says, in one form for both stacks.
 
+use crate::params::Stack;
 use mixer_compiler::airframe::Airframe;
-use mixer_facts::params::Stack;
 
 use crate::review::log::Series;
 

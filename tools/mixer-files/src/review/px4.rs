@@ -2,7 +2,7 @@
 
 use crate::import::{Stated, USUAL_US};
 
-use mixer_facts::params::Stack;
+use crate::params::Stack;
 
 use crate::review::flight::Flight;
 use crate::review::log::{Channel, Log, Series};

@@ -1,8 +1,8 @@
 //! A log read, and held against the airframe: whether it is one of this vehicle.
 
+use crate::params::bench_pulses;
 use mixer_compiler::Source;
 use mixer_compiler::airframe::Airframe;
-use mixer_facts::params::bench_pulses;
 
 use crate::import::{Stated, USUAL_US, stated};
 

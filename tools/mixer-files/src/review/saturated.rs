@@ -4,7 +4,7 @@ use mixer_compiler::Compiled;
 use mixer_rt::{Axis, Conditions, Health, Wrench};
 use serde::Serialize;
 
-use mixer_facts::params::Stack;
+use crate::params::Stack;
 
 use crate::review::flight::Flight;
 use crate::review::log::median;

@@ -21,6 +21,4 @@ pub struct Wishes {
     pub closed_loop: bool,
     /// Voltage of the empty and of the full pack, V, or nothing for what the bench had.
     pub pack_v: Option<[f64; 2]>,
-    /// Whether rows of the map stand for runs of one rotor alone that are missing.
-    pub rotor_out_from_map: bool,
 }

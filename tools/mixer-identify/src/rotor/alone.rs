@@ -25,8 +25,6 @@ const FEWEST: usize = 6;
 const OTHER_VOLTAGE: f64 = 0.03;
 /// Throttle by which a run may end inside the range that is commanded.
 const SHORT: f64 = 0.05;
-/// Throttles within this are one level of a map.
-const SAME_LEVEL: f64 = 0.005;
 /// Lowest measured throttle above which a rotor that stands still is far from what was measured.
 const LOW: f64 = 0.15;
 
@@ -96,72 +94,6 @@ pub fn identify(
         torque,
         measured,
         points: points.len(),
-        other_at: None,
-    })
-}
-
-/// Identifies a rotor alone from the rows of a map in which the other one turns at its lowest
-/// level. What that one gives there is taken off by the pair's polynomials, whose own difference
-/// from its lowest level to zero is small, while their values at zero are extrapolated.
-pub fn from_map(
-    benches: &[Bench],
-    turning: Turning,
-    pair: &Pair,
-    voltage: Option<&Voltage>,
-    warnings: &mut Vec<String>,
-) -> Result<Alone, Refusal> {
-    const FLAG: &str = "--rotor-out-from-map";
-    let [run_flag, rotor, other] = turning.words();
-    let own = |p: &Point| turning.in_order([p.u, p.l]);
-    let maps = || benches.iter().filter(|b| b.kind == Kind::Pair);
-    let others = maps().flat_map(|b| &b.points).map(|p| own(p)[1]);
-    let [level, _] = extent(others);
-    let map = maps().find(|b| b.points.iter().any(|p| own(p)[1] == level));
-    let Some(map) = map.filter(|_| level <= LOW) else {
-        return Err(Refusal::of(
-            maps().map(|b| b.file.as_str()).collect::<Vec<_>>().join(", "),
-            format!("{FLAG}: the lowest throttle of the {other} rotor is {level:.2}"),
-            format!(
-                "a map in which the {other} rotor goes down to {LOW} or lower while the {rotor} one takes {FEWEST} throttles; or \
-                 a run of the {rotor} rotor alone ({run_flag})"
-            ),
-        ));
-    };
-    let models = [&pair.thrust_n, &pair.torque_nm].map(|of| Polynomial::of(pair.basis, of));
-    let of_other = |x: f64| {
-        let ([u, l], [u0, l0]) = (turning.in_order([x, level]), turning.throttles(x));
-        models.each_ref().map(|model| model.at(u, l) - model.at(u0, l0))
-    };
-    let of_rotor = |p: &Point| {
-        let ([x, _], [f, q]) = (own(p), of_other(own(p)[0]));
-        Point {
-            u: x,
-            l: 0.0,
-            thrust: p.thrust - f,
-            // As of a run, whose torque has no sign yet.
-            torque: turning.sign() * (p.torque - q),
-            ..*p
-        }
-    };
-    let points = map.points.iter().filter(|p| own(p)[1] <= level + SAME_LEVEL);
-    let run = Bench {
-        kind: Kind::SingleRotor,
-        turning: None,
-        points: points.map(of_rotor).collect(),
-        ..map.clone()
-    };
-    let alone = identify(&run, turning, pair, voltage, warnings)?;
-    let [f, _] = of_other(alone.measured[1]);
-    warnings.push(format!(
-        "{FLAG}: the {rotor} rotor alone is from rows of {} in which the {other} one turned at {level:.2}; what that gives, up to \
-         {:.1} % of thrust, is taken off by the pair's polynomials. On three real pairs this misses runs of the rotor alone by 1 to \
-         5 % of thrust and 1 to 6 % of torque: a run ({run_flag}) is truer",
-        map.file,
-        100.0 * f.abs() / alone.thrust.full_scale
-    ));
-    Ok(Alone {
-        other_at: Some(level),
-        ..alone
     })
 }
 

@@ -508,38 +508,6 @@ fn single_rotors_are_described_by_three_terms() {
             }
         }
     }
-    // The lowest level of the full-range maps, against the runs, which are of other days.
-    let mut lowest = Vec::new();
-    for ((upper, lower), (map, _)) in pairs.into_iter().zip(maps) {
-        let mut settings = settings(Some(Basis::Cubic));
-        settings.wishes.voltage_exponent = Some([1.75; 2]);
-        let mut of = |runs: [Option<PathBuf>; 2], from_map: bool| {
-            settings.wishes.rotor_out_from_map = from_map;
-            let runs = runs.each_ref().map(Option::as_deref);
-            let found = identify_with_runs(&[coaxial(map)], runs, &settings)
-                .unwrap_or_else(|e| panic!("{map}: {}", e[0]));
-            let told = found.warnings.iter().any(|w| w.contains("--rotor-out-from-map"));
-            assert_eq!(told, from_map, "{:?}", found.warnings);
-            let pair = found.pair.expect("a pair");
-            [pair.lower_out, pair.upper_out].map(|alone| alone.expect("a rotor alone"))
-        };
-        let runs = of([Some(coaxial(upper)), Some(coaxial(lower))], false);
-        let rows = of([None, None], true);
-        for (run, rows) in runs.iter().zip(&rows) {
-            let value = |[a1, a2, a3]: [f64; 3], x: f64| ((a3 * x + a2) * x + a1) * x;
-            let rms = |a: [f64; 3], b: [f64; 3], scale: f64| {
-                let at = (0..=20).map(|k| 0.1 + 0.0425 * f64::from(k));
-                let squares = at.map(|x| (value(a, x) - value(b, x)) * (value(a, x) - value(b, x)));
-                100.0 * (squares.sum::<f64>() / 21.0).sqrt() / scale
-            };
-            lowest.push([
-                rms(run.thrust_n, rows.thrust_n, run.thrust.full_scale),
-                rms(run.torque_nm, rows.torque_nm, run.torque.full_scale),
-            ]);
-        }
-    }
-    println!("lowest level of full-range maps {lowest:.2?}");
-    assert!(lowest.iter().all(|[f, q]| *f < 5.0 && *q < 6.5), "{lowest:?}");
     let mean = |errors: &[[f64; 2]], k: usize| errors.iter().map(|e| e[k]).sum::<f64>() / errors.len() as f64;
     let figures = [&errors, &from_idle, &from_forty].map(|errors| [0, 1].map(|k| mean(errors, k)));
     let [alone, idle, forty] = figures;

@@ -6,11 +6,10 @@ use mixer_compiler::Compiled;
 use mixer_compiler::airframe::Airframe;
 use mixer_compiler::diagnostic::rounded;
 use mixer_compiler::hover::RotorOut;
-use serde::Serialize;
 
 /// A parameter of a flight stack.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Parameter {
+#[derive(Clone, Debug)]
+pub(super) struct Parameter {
     /// Its name.
     pub name: String,
     /// Its value.
@@ -20,9 +19,8 @@ pub struct Parameter {
 }
 
 /// A parameter's value, in the type that the stack holds it in.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-#[serde(untagged)]
-pub enum Value {
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Value {
     /// A whole number.
     Whole(i32),
     /// A number in single precision.

@@ -4,7 +4,6 @@ mod ardupilot;
 pub mod frames;
 mod parameter;
 mod px4;
-pub mod settings;
 mod stack;
 
 use std::fmt::Write as _;
@@ -171,6 +170,17 @@ fn header(compiled: &Compiled, file: &str, options: &Options, notes: &[String]) 
         env!("CARGO_PKG_VERSION"),
         file,
     );
+    if !options.own {
+        let unit = match options.stack {
+            Stack::Px4 => compiled.scale(),
+            Stack::Ardupilot => compiled.ardupilot_scale(),
+        };
+        let (roll, pitch, yaw, thrust) = (unit.roll_nm, unit.pitch_nm, unit.yaw_nm, unit.thrust_n);
+        let _ = writeln!(
+            head,
+            "# A setpoint of 1 is {roll:.4} N m roll, {pitch:.4} N m pitch, {yaw:.4} N m yaw, {thrust:.3} N."
+        );
+    }
     for note in notes {
         for (k, line) in wrapped(&format!("{note}."), COMMENT).iter().enumerate() {
             // Writing to a String cannot fail.

@@ -1,1 +1,0 @@
-from flight_stand_api_v1_pb2 import *

@@ -1,2 +1,0 @@
-def insecure_channel(address):
-    return address
