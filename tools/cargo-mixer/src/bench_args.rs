@@ -94,6 +94,8 @@ pub(crate) fn role(text: &str) -> Result<(String, String), String> {
     let (role, value) = text
         .split_once('=')
         .ok_or_else(|| format!("{text:?} is not ROLE=VALUE"))?;
+    // The throttle of one rotor.
+    let role = if role == "throttle" { "upper" } else { role };
     match ROLES.iter().any(|(known, ..)| *known == role) {
         true => Ok((role.to_string(), value.trim().to_string())),
         false => Err(unknown_role(role).to_string()),

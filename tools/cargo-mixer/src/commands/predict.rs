@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use mixer_identify::bench::Preparation;
 use mixer_identify::bench::air::Known;
-use mixer_identify::bench::header::{ByHand, Offers};
+use mixer_identify::bench::header::ByHand;
 use mixer_identify::bench::read::Reading;
 use mixer_identify::bench::sign::SignChoice;
 use mixer_identify::fit::basis::ThrottleBox;
@@ -73,10 +73,10 @@ pub struct PredictArgs {
     #[arg(long, value_name = "LOW,HIGH", value_parser = pwm_range)]
     pub pwm_range: Option<[f64; 2]>,
     /// A column by hand, as throttle="ESC" or thrust=#2 (number from 1).
-    #[arg(long = "column", value_name = "ROLE=HEADER", value_parser = single_role)]
+    #[arg(long = "column", value_name = "ROLE=HEADER", value_parser = role)]
     pub columns: Vec<(String, String)>,
     /// A unit by hand, as throttle=% or thrust=gf, for a header without one.
-    #[arg(long = "unit", value_name = "ROLE=UNIT", value_parser = single_role)]
+    #[arg(long = "unit", value_name = "ROLE=UNIT", value_parser = role)]
     pub units: Vec<(String, String)>,
     /// Take off all rows what the load cells read at rest, in the mean of the rows at rest: throttle 0
     /// with speeds of 0 or several rows that agree.
@@ -137,9 +137,6 @@ impl RotorArgs {
             reading: Reading {
                 by_hand: ByHand {
                     full_rpm,
-                    diameter_m: self.diameter,
-                    density_kg_m3: air.as_ref().map(|air| air.density_kg_m3),
-                    offers: Offers::Header,
                     ..ByHand::default()
                 },
                 pwm_range: None,
@@ -182,21 +179,12 @@ impl RotorArgs {
     }
 }
 
-/// A role of a file with one rotor, whose throttle is that of `upper`.
-fn single_role(text: &str) -> Result<(String, String), String> {
-    match text.strip_prefix("throttle=") {
-        Some(value) => role(&format!("upper={value}")),
-        None => role(text),
-    }
-}
-
 impl PredictArgs {
     /// The settings that the arguments ask for.
     pub fn settings(&self) -> Settings {
         let mut settings = self.rotors.reading(self.air.air(), self.rpm_at_full);
         settings.reading.by_hand.columns = self.columns.clone();
         settings.reading.by_hand.units = self.units.clone();
-        settings.reading.by_hand.offers = Offers::OneRotor;
         settings.reading.pwm_range = self.pwm_range;
         settings.preparation.signs.thrust = self.thrust_sign;
         settings.preparation.tare = self.tare;

@@ -8,8 +8,6 @@
 
 use std::ops::{Index, IndexMut};
 
-use mixer_compiler::atmosphere::SEA_LEVEL_KG_M3;
-
 use self::name::{Name, distinct_prefixes};
 use crate::bench::sheet::Heading;
 use crate::bench::units::{self, Quantity, Scale};
@@ -103,64 +101,17 @@ pub struct ByHand {
     /// Speed at full throttle, revolutions per minute, of controllers that hold a speed: columns of
     /// speeds stand for throttles.
     pub full_rpm: Option<f64>,
-    /// Diameter, m, of the propeller of columns C_T and C_P.
-    pub diameter_m: Option<f64>,
-    /// Density, kg/m3, of the air in which they are to hold.
-    pub density_kg_m3: Option<f64>,
     /// Exchange the two rotors that the header suggests.
     pub swap: bool,
-    /// The options that a message offers.
-    pub offers: Offers,
 }
 
-/// The options by which the user of a command can name columns and units of a file.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub enum Offers {
-    /// `--column upper=`, `lower=` and so on.
-    #[default]
-    Pair,
-    /// `--column throttle=` and so on.
-    OneRotor,
-    /// None: the header has to say it.
-    Header,
+/// How a column is named.
+fn named(role: &str, header: &str) -> String {
+    format!("--column {role}={header}")
 }
 
-impl Offers {
-    /// The role's name.
-    fn role(self, role: &str) -> &str {
-        match (self, role) {
-            (Offers::OneRotor | Offers::Header, "upper") => "throttle",
-            _ => role,
-        }
-    }
-
-    /// How a column is named.
-    fn column(self, role: &str, header: &str) -> String {
-        let role = self.role(role);
-        match self {
-            Offers::Header => format!("a column named {role}"),
-            _ => format!("--column {role}={header}"),
-        }
-    }
-
-    /// How a unit is named.
-    fn unit(self, role: &str) -> String {
-        match self {
-            Offers::Header => "a unit in the header".to_owned(),
-            _ => format!("a unit in the header, or --unit {}=UNIT", self.role(role)),
-        }
-    }
-
-    /// What a value above 1 in a throttle column without a unit needs.
-    pub fn above_one(self) -> String {
-        let [pulse, per_cent] = match self {
-            Offers::Pair => ["--pwm-range 1000,2000", "--unit upper=% --unit lower=%"],
-            Offers::OneRotor => ["--pwm-range 1000,2000", "--unit throttle=%"],
-            Offers::Header => ["PWM (us) in the header", "Throttle (%) in the header"],
-        };
-        format!("is above 1: give {pulse} if it is a pulse width, {per_cent} if it is in per cent")
-    }
-}
+/// What a value above 1 in a throttle column without a unit needs.
+pub const ABOVE_ONE: &str = "is above 1: give --pwm-range 1000,2000 if it is a pulse width, --unit upper=% --unit lower=% if it is in per cent";
 
 /// What a header lacks, and what would mend it.
 type Lack = (String, String);
@@ -200,12 +151,6 @@ impl Columns {
             .flatten()
     }
 
-    /// Whether thrust is that of coefficients.
-    pub fn by_coefficients(&self) -> bool {
-        let thrust = self[Quantity::Thrust].whole.as_ref();
-        thrust.is_some_and(|column| matches!(column.scale, Scale::OfSpeed(_)))
-    }
-
     /// The place of a quantity's column.
     fn slot(&mut self, quantity: Quantity, side: Option<usize>) -> &mut Option<Column> {
         let Split { whole, rotors } = &mut self[quantity];
@@ -238,7 +183,6 @@ impl Columns {
                 return Err(unknown_role(role));
             };
             let index = position(&headers, wanted).ok_or_else(|| {
-                let role = by_hand.offers.role(role);
                 Refusal::of(
                     place,
                     format!("no column {wanted:?} for the role {role}"),
@@ -255,7 +199,7 @@ impl Columns {
             columns.sides_named |= matches!(role.as_str(), "upper" | "lower");
         }
         columns.sides_named |= by_hand.swap;
-        columns.by_speed(&names, by_hand, &mut lacks);
+        columns.by_speed(&names, by_hand);
         columns.require(by_hand, &mut lacks);
         if lacks.is_empty() {
             return Ok(columns);
@@ -266,9 +210,9 @@ impl Columns {
         Err(Refusal::of(place, reason, mends.join("; ")))
     }
 
-    /// Speeds that stand for throttles, and what coefficients give at them.
-    fn by_speed(&mut self, names: &[Name], by_hand: &ByHand, lacks: &mut Vec<Lack>) {
-        use Quantity::{PowerCoefficient, Speed, Throttle, Thrust, ThrustCoefficient, Torque};
+    /// Speeds that stand for throttles.
+    fn by_speed(&mut self, names: &[Name], by_hand: &ByHand) {
+        use Quantity::{Speed, Throttle};
         let speeds = &self[Speed].rotors;
         let commanded = |rotor: usize| self[Throttle].rotors[rotor].is_some();
         let all = speeds.iter().any(Option::is_some)
@@ -281,47 +225,15 @@ impl Columns {
             self[Throttle].rotors = throttles;
             self.sides_named |= names.iter().any(Name::says_upper_or_lower);
         }
-        let Some(of_thrust) = self[ThrustCoefficient]
-            .whole
-            .clone()
-            .filter(|_| !self[Thrust].any())
-        else {
-            return;
-        };
-        if names.iter().any(|name| name.text == "j") {
-            let mend = "the static table of the same propeller, RPM CT CP, of a file named .._static_..";
-            let what = "CT and CP over the advance ratio J: a propeller in forward flight";
-            return lacks.push((what.to_owned(), mend.to_owned()));
-        }
-        let Some(diameter) = by_hand.diameter_m else {
-            let what = "the diameter is missing, without which CT and CP give no thrust";
-            return lacks.push((what.to_owned(), "--diameter METRE".to_owned()));
-        };
-        // T = C_T rho n^2 D^4, Q = C_P rho n^2 D^5 / (2 pi), n in revolutions per second.
-        let density = by_hand.density_kg_m3.unwrap_or(SEA_LEVEL_KG_M3);
-        let squared = diameter * diameter;
-        let force = density * squared * squared / 3600.0;
-        let moment = force * diameter / std::f64::consts::TAU;
-        let of = |column: Column, factor| Column {
-            scale: Scale::OfSpeed(factor),
-            ..column
-        };
-        self[Torque].whole = self[PowerCoefficient]
-            .whole
-            .clone()
-            .map(|power| of(power, moment));
-        self[Thrust].whole = Some(of(of_thrust, force));
     }
 
     /// What every use needs.
     fn require(&self, by_hand: &ByHand, lacks: &mut Vec<Lack>) {
-        let offers = by_hand.offers;
-        let pair = offers == Offers::Pair;
         if let [None, lower] = &self[Quantity::Throttle].rotors {
-            let mut mend = offers.column("upper", "HEADER");
-            if pair && lower.is_none() {
-                mend += " and --column lower=HEADER";
-            }
+            let mut mend = match lower {
+                None => "--column upper=HEADER and --column lower=HEADER, or --column throttle=HEADER of one rotor".to_owned(),
+                Some(_) => named("upper", "HEADER"),
+            };
             let speed = self[Quantity::Speed].rotors.iter().flatten().next();
             if let Some(speed) = speed.filter(|_| by_hand.full_rpm.is_none()) {
                 let held = format!("where the speed controllers hold the speeds {:?}", speed.name);
@@ -330,15 +242,12 @@ impl Columns {
             let of_upper = lower.as_ref().map_or("", |_| " of the upper rotor");
             lacks.push((format!("no throttle column{of_upper}"), mend));
         }
-        if !self[Quantity::Thrust].any() && !self[Quantity::ThrustCoefficient].any() {
-            lacks.push(("no thrust column".to_owned(), offers.column("thrust", "HEADER")));
+        if !self[Quantity::Thrust].any() {
+            lacks.push(("no thrust column".to_owned(), named("thrust", "HEADER")));
         }
         // Of a pair it is asked for later, where nothing else is missing.
-        let torque = self[Quantity::Torque].any() || self[Quantity::PowerCoefficient].any();
-        if !torque && !lacks.is_empty() && by_hand.diameter_m.is_none() {
-            let otherwise = if pair { "" } else { " (or --diameter METRE)" };
-            let mend = offers.column("torque", "HEADER") + otherwise;
-            lacks.push(("no torque column".to_owned(), mend));
+        if !self[Quantity::Torque].any() && !lacks.is_empty() {
+            lacks.push(("no torque column".to_owned(), named("torque", "HEADER")));
         }
     }
 
@@ -376,7 +285,7 @@ impl Columns {
                 _ => None,
             };
             let role = ROLES.iter().find(|(_, of, at)| (*of, *at) == (quantity, side));
-            let role = role.map_or("coefficient", |(role, ..)| *role);
+            let Some(&(role, ..)) = role else { continue };
             if by_hand.columns.iter().any(|(r, _)| r == role) {
                 continue;
             }
@@ -385,17 +294,15 @@ impl Columns {
             let slot = self.slot(quantity, side);
             if let Some(first) = slot {
                 // Two columns for one role: guessing would be silent. Told of the first two.
-                let (first, raw, shown) = (&first.name, &name.raw, by_hand.offers.role(role));
-                let both = format!("both look like the {shown}");
+                let (first, raw) = (&first.name, &name.raw);
+                let both = format!("both look like the {role}");
                 if !aside && !lacks.iter().any(|(what, _)| what.ends_with(&both)) {
                     // Of names that say no side the one that is told of may be either rotor's.
-                    let mend = match (by_hand.offers, quantity, name.side(&prefixes)) {
-                        (Offers::Pair, Throttle, None) => {
-                            let [upper, lower] =
-                                ["upper", "lower"].map(|role| by_hand.offers.column(role, "HEADER"));
-                            format!("{upper} and {lower}")
+                    let mend = match (quantity, name.side(&prefixes)) {
+                        (Throttle, None) => {
+                            ["upper", "lower"].map(|role| named(role, "HEADER")).join(" and ")
                         }
-                        _ => by_hand.offers.column(role, &format!("{raw:?}")),
+                        _ => named(role, &format!("{raw:?}")),
                     };
                     lacks.push((format!("the columns {first:?} and {raw:?} {both}"), mend));
                 }
@@ -509,14 +416,13 @@ fn scaled(
     let without = match quantity {
         Quantity::Throttle if of_pulses() => Some(Scale::Pulse(1.0)),
         Quantity::Throttle | Quantity::Time | Quantity::Speed => Some(Scale::Factor(1.0)),
-        Quantity::ThrustCoefficient | Quantity::PowerCoefficient => Some(Scale::Factor(1.0)),
         _ => None,
     };
     let found = unit.map_or(without, scale);
-    let (raw, shown) = (&name.raw, by_hand.offers.role(role));
+    let raw = &name.raw;
     let lack = match (found, unit, other) {
         (None, Some(unit), _) => Some(format!(
-            "the unit {unit:?} of the column {raw:?} is unknown for the {shown}"
+            "the unit {unit:?} of the column {raw:?} is unknown for the {role}"
         )),
         (None, None, _) => Some(format!("the column {raw:?} has no unit")),
         (_, Some(unit), Some(other)) if given.is_none() => Some(format!(
@@ -526,8 +432,7 @@ fn scaled(
     };
     let mend = || {
         format!(
-            "{} with one of: {}",
-            by_hand.offers.unit(role),
+            "a unit in the header, or --unit {role}=UNIT, with one of: {}",
             units::known(quantity)
         )
     };

@@ -5,11 +5,11 @@
 
 use std::fmt;
 
-use mixer_compiler::atmosphere::{self, SEA_LEVEL_KG_M3};
+use mixer_compiler::atmosphere;
 use serde::Serialize;
 
 use crate::bench::air;
-use crate::bench::header::{ByHand, Column, Columns, Offers, Split, is_unit, known};
+use crate::bench::header::{ABOVE_ONE, ByHand, Column, Columns, Split, is_unit, known};
 use crate::bench::number::{Cell, is_blank, is_missing};
 use crate::bench::sheet::{Sheet, names};
 use crate::bench::units::{Quantity, Scale};
@@ -113,7 +113,7 @@ pub struct Log {
     pub samples: Vec<Sample>,
     /// Rows that could not be read.
     pub refused: Vec<RefusedRow>,
-    /// The air in the mean of the rows, where columns tell it, or of coefficients.
+    /// The air in the mean of the rows, where columns tell it.
     pub air: Option<air::Known>,
     /// What was passed over or taken for something else.
     pub notes: Vec<String>,
@@ -178,7 +178,6 @@ pub fn read(name: &str, bytes: &[u8], reading: &Reading) -> Result<Log, Refusal>
     let cells = Cells {
         pwm_range: reading.pwm_range.unwrap_or(PWM_RANGE),
         pwm_given: reading.pwm_range.is_some(),
-        offers: by_hand.offers,
         decimals,
         most: header
             .iter()
@@ -213,7 +212,7 @@ pub fn read(name: &str, bytes: &[u8], reading: &Reading) -> Result<Log, Refusal>
             Err(fault) => refused.push(RefusedRow::new(name, *line, fault)),
         }
     }
-    let mut notes = stand_ins(&columns, by_hand);
+    let mut notes: Vec<String> = stand_in(&columns, by_hand).into_iter().collect();
     if let Some((line, what)) = asides.first() {
         let more = match asides.len() {
             1 => String::new(),
@@ -222,16 +221,10 @@ pub fn read(name: &str, bytes: &[u8], reading: &Reading) -> Result<Log, Refusal>
         notes.push(format!("{name}:{line} is passed over: {what}{more}"));
     }
     densities.retain(|density| density.is_finite());
-    let air = match columns.by_coefficients() {
-        true => by_hand.density_kg_m3.is_none().then(|| air::Known {
-            density_kg_m3: SEA_LEVEL_KG_M3,
-            from: "standard, for CT and CP".to_owned(),
-        }),
-        false => (!densities.is_empty()).then(|| air::Known {
-            density_kg_m3: densities.iter().sum::<f64>() / densities.len() as f64,
-            from: format!("columns of {name}"),
-        }),
-    };
+    let air = (!densities.is_empty()).then(|| air::Known {
+        density_kg_m3: densities.iter().sum::<f64>() / densities.len() as f64,
+        from: format!("columns of {name}"),
+    });
     Ok(Log {
         name: name.to_owned(),
         columns,
@@ -242,28 +235,16 @@ pub fn read(name: &str, bytes: &[u8], reading: &Reading) -> Result<Log, Refusal>
     })
 }
 
-/// What stands for throttle and thrust.
-fn stand_ins(columns: &Columns, by_hand: &ByHand) -> Vec<String> {
+/// What stands for the throttle.
+fn stand_in(columns: &Columns, by_hand: &ByHand) -> Option<String> {
     let throttles = columns[Quantity::Throttle].rotors.iter().flatten();
     let speeds = throttles.filter(|column| matches!(column.scale, Scale::Speed(_)));
     let speeds: Vec<String> = speeds.map(|column| format!("{:?}", column.name)).collect();
-    let speeds = by_hand.full_rpm.filter(|_| !speeds.is_empty()).map(|full| {
-        format!(
-            "throttle is {} over {full} rpm (--rpm-at-full)",
-            speeds.join(" and ")
-        )
-    });
-    let diameter = by_hand.diameter_m.filter(|_| columns.by_coefficients());
-    let coefficients = diameter.map(|diameter| {
-        let density = match by_hand.density_kg_m3 {
-            Some(density) => format!("{density} kg/m3"),
-            None => format!("{SEA_LEVEL_KG_M3} kg/m3 (standard; --density gives another)"),
-        };
-        format!(
-            "thrust and torque are those of CT and CP with a diameter of {diameter} m in air of {density}"
-        )
-    });
-    speeds.into_iter().chain(coefficients).collect()
+    let full = by_hand.full_rpm.filter(|_| !speeds.is_empty())?;
+    Some(format!(
+        "throttle is {} over {full} rpm (--rpm-at-full)",
+        speeds.join(" and ")
+    ))
 }
 
 /// Why a row is none of measurements.
@@ -284,7 +265,6 @@ fn aside(record: &csv::StringRecord) -> Option<&'static str> {
 struct Cells {
     pwm_range: [f64; 2],
     pwm_given: bool,
-    offers: Offers,
     /// Decimal mark by column.
     decimals: Vec<char>,
     /// Most cells that have a name, and least of a row.
@@ -299,14 +279,13 @@ impl Cells {
     fn sample(&self, line: u64, columns: &Columns, record: &csv::StringRecord) -> Result<Sample, Fault> {
         self.in_columns(record)?;
         let speeds = &columns[Quantity::Speed].rotors;
-        let speed = [0, 1].map(|rotor| self.value(&speeds[rotor], record, f64::NAN).unwrap_or(f64::NAN));
-        let rpm = speed[0];
+        let speed = [0, 1].map(|rotor| self.value(&speeds[rotor], record).unwrap_or(f64::NAN));
         let split = |quantity: Quantity| -> Result<Split<f64>, Fault> {
             let Split {
                 whole,
                 rotors: [upper, lower],
             } = &columns[quantity];
-            let value = |column| self.value(column, record, rpm);
+            let value = |column| self.value(column, record);
             Ok(Split {
                 whole: value(whole)?,
                 rotors: [value(upper)?, value(lower)?],
@@ -358,19 +337,16 @@ impl Cells {
 
     /// Density of the air, kg/m3; NaN where the row does not tell it.
     fn density(&self, columns: &Columns, record: &csv::StringRecord) -> f64 {
-        let of = |quantity| {
-            self.value(&columns[quantity].whole, record, f64::NAN)
-                .unwrap_or(f64::NAN)
-        };
+        let of = |quantity| self.value(&columns[quantity].whole, record).unwrap_or(f64::NAN);
         match columns[Quantity::Density].whole {
             Some(_) => of(Quantity::Density),
             None => atmosphere::density(of(Quantity::Pressure), of(Quantity::Temperature)),
         }
     }
 
-    fn value(&self, column: &Option<Column>, record: &csv::StringRecord, rpm: f64) -> Result<f64, Fault> {
+    fn value(&self, column: &Option<Column>, record: &csv::StringRecord) -> Result<f64, Fault> {
         let Some(column) = column else { return Ok(f64::NAN) };
-        Ok(column.scale.of(self.number(column, record)?, rpm))
+        Ok(column.scale.of(self.number(column, record)?))
     }
 
     fn throttle(&self, column: &Option<Column>, record: &csv::StringRecord) -> Result<f64, Fault> {
@@ -384,13 +360,13 @@ impl Cells {
             Scale::Factor(1.0) if self.pwm_given && raw > 1.5 => Some(raw),
             _ => None,
         };
-        let throttle = us.map_or(column.scale.of(raw, f64::NAN), |us| (us - low) / (high - low));
+        let throttle = us.map_or(column.scale.of(raw), |us| (us - low) / (high - low));
         let why = match column.scale {
             _ if us.is_some_and(|us| us > 0.0 && throttle < -AT_REST) => {
                 format!("is far below the pulse widths {low}..{high} us: another unit, or --pwm-range")
             }
             _ if throttle.is_nan() || throttle <= 1.02 => return Ok(throttle),
-            Scale::Factor(1.0) if !self.pwm_given => self.offers.above_one().to_owned(),
+            Scale::Factor(1.0) if !self.pwm_given => ABOVE_ONE.to_owned(),
             Scale::Pulse(_) | Scale::Factor(1.0) => {
                 format!("is throttle {throttle:.3}, above the range {low}..{high} us (--pwm-range)")
             }

@@ -1,7 +1,6 @@
 //! Files as people hand them in: read with these numbers, read with a word, or refused with the mend.
 //! What is silently wrong is the only failure.
 
-use super::header::Offers;
 use crate::identified::Settings;
 use crate::texts::{Text, read};
 
@@ -24,7 +23,6 @@ const G: f64 = 9.80665e-3;
 fn one_rotor() -> Settings {
     let mut settings = Settings::default();
     settings.preparation.own_columns = true;
-    settings.reading.by_hand.offers = Offers::OneRotor;
     settings
 }
 
@@ -294,7 +292,7 @@ fn names_and_units_of_columns() {
             ),
             (
                 "Throttle,Thrust (g)\n40,820\n100,2040\n",
-                Refused(&["2 of 2 rows", "--unit throttle=%"]),
+                Refused(&["2 of 2 rows", "--unit upper=%"]),
             ),
             (
                 "Throttle,Thrust (g)\n1400,820\n2000,2040\n",
@@ -323,27 +321,19 @@ fn names_and_units_of_columns() {
             ),
             (
                 "J CT CP eta\n0 0.13 0.05 0\n0.1 0.12 0.05 0.2\n",
-                Refused(&["forward flight", "static"]),
+                Refused(&["no thrust column"]),
             ),
         ],
     );
 }
 
 #[test]
-fn speeds_and_coefficients() {
+fn speeds_stand_for_throttles() {
     let mut settings = one_rotor();
     settings.reading.by_hand.full_rpm = Some(5000.0);
-    settings.reading.by_hand.diameter_m = Some(0.25);
-    // C_T 0.1, C_P 0.04 at 5000 rpm.
-    let n2 = 5000.0 / 60.0 * 5000.0 / 60.0;
-    let force = 0.1 * 1.225 * n2 * 0.25 * 0.25 * 0.25 * 0.25;
-    let moment = 0.04 * 1.225 * n2 * 0.25 * 0.25 * 0.25 * 0.25 * 0.25 / std::f64::consts::TAU;
-    let uiuc = "RPM     CT      CP\n2500  0.0900  0.0350\n5000  0.1000  0.0400\n";
     hold(
         &settings,
         &[
-            (uiuc, Read(2, [1.0, 0.0, force, moment])),
-            (uiuc, Noted("1.225 kg/m3 (standard")),
             (
                 "Motor speed (rpm),Thrust (N)\n2500,2\n5000,8\n",
                 Read(2, [1.0, 0.0, 8.0, 0.0]),
@@ -366,10 +356,6 @@ fn speeds_and_coefficients() {
                 Read(3, [0.5, 0.5, 3.0, -0.2]),
             ),
         ],
-    );
-    hold(
-        &one_rotor(),
-        &[(uiuc, Refused(&["--diameter METRE", "--rpm-at-full"]))],
     );
 }
 

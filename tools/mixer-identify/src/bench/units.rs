@@ -26,10 +26,6 @@ pub enum Quantity {
     Power,
     /// Speed, to revolutions per minute.
     Speed,
-    /// Thrust over rho n^2 D^4, n in revolutions per second.
-    ThrustCoefficient,
-    /// Shaft power over rho n^3 D^5.
-    PowerCoefficient,
     /// Time since the log's start, to s.
     Time,
     /// Temperature of the air, to K.
@@ -51,17 +47,14 @@ pub enum Scale {
     Pulse(f64),
     /// A speed that stands for a throttle; multiply.
     Speed(f64),
-    /// Multiply by this and by the square of the row's speed, revolutions per minute.
-    OfSpeed(f64),
 }
 
 impl Scale {
-    /// A value in SI units (or a throttle, but for pulse widths in microseconds); `rpm` is the row's speed.
-    pub fn of(self, raw: f64, rpm: f64) -> f64 {
+    /// A value in SI units (or a throttle, but for pulse widths in microseconds).
+    pub fn of(self, raw: f64) -> f64 {
         match self {
             Scale::Factor(factor) | Scale::Pulse(factor) | Scale::Speed(factor) => raw * factor,
             Scale::Affine(factor, offset) => raw * factor + offset,
-            Scale::OfSpeed(factor) => raw * factor * rpm * rpm,
         }
     }
 }

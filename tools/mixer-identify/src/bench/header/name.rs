@@ -85,7 +85,7 @@ impl Name {
         }
     }
 
-    /// What is measured beside thrust and torque: speed, electrical power, coefficients.
+    /// What is measured beside thrust and torque: speed, electrical power.
     fn of_motor(&self) -> Option<Quantity> {
         const ELECTRICAL: &str = "electrical electric input supply total motor upper lower";
         let unit = self
@@ -96,8 +96,6 @@ impl Name {
             .words()
             .filter(|word| word.len() > 1 && !ELECTRICAL.split(' ').any(|of| of == *word));
         match self.text.as_str() {
-            "ct" => Some(Quantity::ThrustCoefficient),
-            "cp" => Some(Quantity::PowerCoefficient),
             text if text.contains("servo") => None,
             _ if unit.is_some() || self.words().any(|word| word == "rpm") => Some(Quantity::Speed),
             _ => (words.next() == Some("power") && words.next().is_none()).then_some(Quantity::Power),
