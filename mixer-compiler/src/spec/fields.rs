@@ -26,9 +26,6 @@ pub(crate) struct Fields<'a, 'f> {
     pub(crate) faults: &'f mut Vec<Diagnostic>,
 }
 
-/// How the keys of polynomial laws ended, which points have taken the place of.
-const RETIRED: &str = "_polynomial";
-
 impl<'a, 'f> Fields<'a, 'f> {
     /// Starts on the whole file; reports unknown and missing keys of its top.
     pub(crate) fn of_file(
@@ -242,9 +239,6 @@ impl<'a, 'f> Fields<'a, 'f> {
     /// lacks.
     fn nearest(&self, key: &str) -> Option<&'static str> {
         let names = || self.shape.names();
-        if let Some(quantity) = key.strip_suffix(RETIRED) {
-            return names().find(|name| name.strip_suffix("_points") == Some(quantity));
-        }
         nearest(key, names().filter(|name| !self.table.contains_key(*name))).or_else(|| nearest(key, names()))
     }
 
@@ -301,10 +295,6 @@ impl<'a, 'f> Fields<'a, 'f> {
         let belongs = |shape| format!("belongs {}", of_header(shape, "in ", "at the top"));
         let under = |shape| of_header(shape, "under ", "above the first `[table]` of the file");
         let (label, help) = match (near, home, elsewhere) {
-            (Some(points), ..) if name.ends_with(RETIRED) => (
-                "polynomials of the voltage are not read any more".to_owned(),
-                format!("write the law as `{points}`: [[V, factor], ..] at some voltages over `range_v`"),
-            ),
             (Some(near), ..) => (
                 format!("did you mean `{near}`?"),
                 format!("rename it `{near}`, or remove it"),

@@ -25,7 +25,7 @@ use nalgebra::{Quaternion, SVector, Vector3};
 
 use crate::battery::Battery;
 use crate::integrator::runge_kutta;
-use crate::motor::Motor;
+use crate::motor::{Motor, NO_LOAD};
 use crate::pair::Pair;
 use crate::state::State;
 use crate::vehicle::{Body, GRAVITY_M_S2};
@@ -103,17 +103,16 @@ impl<const R: usize> Plant<R> {
         }
     }
 
-    /// The same vehicle in air of a density, kg/m3, its rotors on motors with a no-load current (over
-    /// that of full throttle). The ohmic share is that of the thrust's exponent in the file.
+    /// The same vehicle in air of a density, kg/m3, its rotors on motors with [`NO_LOAD`]. The ohmic share is that of the thrust's exponent in the file.
     ///
     /// # Errors
     /// An exponent that is not a motor's.
-    pub fn in_air(self, density_kg_m3: f64, no_load: f64) -> Result<Self, String> {
+    pub fn in_air(self, density_kg_m3: f64) -> Result<Self, String> {
         let voltage = self.voltage.as_ref();
         let exponent = voltage.map_or(USUAL_EXPONENT, |voltage| voltage.exponents()[0]);
         let reference_v = voltage.map(|voltage| voltage.reference);
         let sigma = density_kg_m3 / self.bench_kg_m3;
-        let motor = Motor::new(exponent, no_load, reference_v, sigma).ok_or_else(|| {
+        let motor = Motor::new(exponent, NO_LOAD, reference_v, sigma).ok_or_else(|| {
             format!("thrust follows the voltage by the power {exponent:.2}: motors have 1 to 2")
         })?;
         Ok(Plant {

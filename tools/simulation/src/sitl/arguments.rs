@@ -6,7 +6,6 @@ use clap::{ArgGroup, Parser};
 use mixer_compiler::atmosphere;
 
 use super::plan::Manoeuvre;
-use crate::motor;
 
 /// One vehicle for the simulators of PX4 and ArduPilot
 ///
@@ -66,21 +65,12 @@ pub struct Arguments {
     /// Home at the altitude of this density, kg/m3
     #[arg(long, value_name = "KG_M3", value_parser = density, conflicts_with = "altitude")]
     pub density: Option<f64>,
-    /// No-load current of the motors over that of full throttle, for --altitude and --density
-    #[arg(long, value_name = "SHARE", default_value_t = motor::NO_LOAD, value_parser = no_load)]
-    pub no_load: f64,
     /// Mass, kg, instead of the file's
     #[arg(long, value_parser = positive)]
     pub mass_kg: Option<f64>,
     /// Moments of inertia, kg m2, instead of the file's
     #[arg(long, value_name = "X,Y,Z", value_parser = inertia)]
     pub inertia: Option<[f64; 3]>,
-    /// Time constant of the rotors' lag, s
-    #[arg(long, value_name = "SECONDS", default_value_t = 0.05, value_parser = positive)]
-    pub rotor_lag: f64,
-    /// Height to fly at, m
-    #[arg(long, value_name = "M", default_value_t = 5.0, value_parser = positive)]
-    pub height: f64,
     /// Pulse widths of throttle 0 and 1 in ArduPilot, MOT_PWM_MIN and MOT_PWM_MAX
     #[arg(long, value_name = "LOW,HIGH", default_value = "1000,2000", value_parser = pulses)]
     pub pwm_range: [f64; 2],
@@ -148,13 +138,6 @@ fn density(text: &str) -> Result<f64, String> {
         .contains(&value)
         .then_some(value)
         .ok_or_else(|| format!("must be from {least:.3} to {most:.3} kg/m3"))
-}
-
-fn no_load(text: &str) -> Result<f64, String> {
-    let value = not_negative(text)?;
-    (value < 1.0)
-        .then_some(value)
-        .ok_or_else(|| "must be below 1".to_owned())
 }
 
 fn failure(text: &str) -> Result<Failure, String> {

@@ -20,6 +20,9 @@ pub enum Stack {
     Ardupilot,
 }
 
+/// Height of the manoeuvre, m.
+const HEIGHT_M: f64 = 5.0;
+
 /// Periods, s.
 const HEARTBEAT_S: f64 = 1.0;
 const COMMAND_S: f64 = 1.0;
@@ -113,7 +116,7 @@ impl Pilot {
             stack,
             link,
             plan: arguments.fly.map(Manoeuvre::plan),
-            height_m: arguments.height,
+            height_m: HEIGHT_M,
             phase: Phase::Arming,
             peer: None,
             armed: false,

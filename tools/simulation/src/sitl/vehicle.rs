@@ -29,6 +29,9 @@ const MASS_AT_UNITS: f64 = 0.25;
 /// Least radius of gyration, m: what a single unit, all of it in the middle, is given.
 const LEAST_GYRATION_M: f64 = 0.05;
 
+/// Time constant of a rotor, s.
+const ROTOR_LAG_S: f64 = 0.05;
+
 /// Power in hover per mass where the file has no `[pair.power]`, W/kg: as the paper's vehicle.
 const HOVER_W_PER_KG: f64 = 80.0;
 
@@ -95,7 +98,7 @@ impl Vehicle {
         let body = Body {
             mass_kg,
             inertia_kg_m2,
-            rotor_lag_s: arguments.rotor_lag,
+            rotor_lag_s: ROTOR_LAG_S,
         };
         let reference_v = own.voltage.as_ref().map(|voltage| voltage.reference);
         let full_v = arguments.volts.or(reference_v).unwrap_or(ANY_VOLTAGE_V);
@@ -115,7 +118,7 @@ impl Vehicle {
             let Some(altitude_m) = thin else { return Ok(plant) };
             let density = atmosphere::density_at(altitude_m);
             plant
-                .in_air(density, arguments.no_load)
+                .in_air(density)
                 .map_err(|reason| format!("{path}: {reason}"))
         };
         // Without resistance first: the throttle in hover sets the current.
