@@ -107,7 +107,7 @@ fn functions() -> TokenStream {
             setpoint: &rt::Wrench,
             conditions: impl ::core::convert::Into<rt::Conditions>,
         ) -> ::core::result::Result<rt::Mix<CHANNELS>, rt::SetpointError> {
-            tables::mix::<UNITS, CHANNELS, _, _, _>(&TABLES, setpoint, conditions.into())
+            tables::mix::<UNITS, CHANNELS, _, _, _>(&TABLES, setpoint, conditions.into(), rt::Health::GOOD)
         }
 
         /// [`mix`] with the rotors out that `health` names by channel.
@@ -120,7 +120,7 @@ fn functions() -> TokenStream {
             conditions: impl ::core::convert::Into<rt::Conditions>,
             health: rt::Health,
         ) -> ::core::result::Result<rt::Mix<CHANNELS>, rt::SetpointError> {
-            tables::mix_with_health::<UNITS, CHANNELS, _, _, _>(&TABLES, setpoint, conditions.into(), health)
+            tables::mix::<UNITS, CHANNELS, _, _, _>(&TABLES, setpoint, conditions.into(), health)
         }
     }
 }

@@ -237,14 +237,14 @@ impl MixerTables {
         conditions: impl Into<Conditions>,
         health: Health,
     ) -> Result<AnyMix, SetpointError> {
-        let mut states = vec![UnitState::default(); self.units.len()];
+        let states = || vec![UnitState::default(); self.units.len()];
         let mut throttle = vec![self.throttle.min; 2 * self.units.len()];
         let (achieved, saturation) = mixer_rt::tables::mix_into(
             &self.view(),
             setpoint,
             conditions.into(),
             health,
-            &mut states,
+            states,
             &mut throttle,
         )?;
         Ok((throttle, achieved, saturation))

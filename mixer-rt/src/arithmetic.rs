@@ -7,10 +7,10 @@ pub use scalar::Scalar;
 pub(crate) use scalar::{clamp, divided, divisor, larger, quotient, smaller};
 pub use sqrt::sqrt;
 
-/// In a loop's body: keeps the compiler from unrolling it. Unrolled, the loops of desaturation take
+/// A loop's head that keeps the compiler from unrolling it. Unrolled, the loops of desaturation take
 /// three times the code and are hardly faster. A loop over an array of four needs the array in a
 /// `black_box` as well, as a slice.
 #[inline(always)]
-pub(crate) fn rolled() {
-    core::hint::black_box(());
+pub(crate) fn rolled<I: IntoIterator>(items: I) -> impl Iterator<Item = I::Item> {
+    items.into_iter().inspect(|_| core::hint::black_box(()))
 }

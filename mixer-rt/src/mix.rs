@@ -1,7 +1,7 @@
 //! From setpoint and conditions to throttles and the achieved wrench.
 
 use crate::allocate::allocate;
-use crate::allocate::closed_form::{AllocationMethod, Attained, ClosedForm, Efforts, Request};
+use crate::allocate::closed_form::{AllocationMethod, Asked, Attained, ClosedForm, Efforts};
 use crate::allocate::power_bias::add_power_bias;
 use crate::allocate::priorities::{REQUEST_LIMIT, is_bounded, limited};
 use crate::allocate::unit::UnitState;
@@ -76,9 +76,11 @@ impl<const CHANNELS: usize> Mix<CHANNELS> {
     }
 }
 
-/// Mixes for an airframe of n units: `CHANNELS` = 2 n rotors, `UNITS` = n.
-/// Any finite setpoint is mixed; what conditions are outside the airframe's ranges is said at
-/// [`Conditions`].
+/// Mixes for an airframe of n units: `CHANNELS` = 2 n rotors, `UNITS` = n. The rotors that `health`
+/// names are out: the others give what can be given, and the achieved wrench tells how much. Any
+/// finite setpoint is mixed; what conditions are outside the airframe's ranges is said at
+/// [`Conditions`]. Links the interior point method for every frame unless `health` is the constant
+/// [`Health::GOOD`].
 ///
 /// # Errors
 /// A setpoint or voltage that is infinite or NaN: see [`SetpointError`].
@@ -87,39 +89,11 @@ pub fn mix<const UNITS: usize, const CHANNELS: usize, P: Quantity, I: Inverse, S
     tables: &Tables<'_, P, I, S>,
     setpoint: &Wrench,
     conditions: Conditions,
-) -> Result<Mix<CHANNELS>, SetpointError> {
-    mix_with_health::<UNITS, CHANNELS, P, I, S>(tables, setpoint, conditions, Health::GOOD)
-}
-
-/// [`mix`] with some rotors out: the others give what can be given, and the achieved wrench tells
-/// how much. `UNITS` is not inferred; the generated module has this function without it. Links
-/// the interior point method for every frame.
-///
-/// # Errors
-/// As [`mix`].
-#[inline(always)]
-pub fn mix_with_health<
-    const UNITS: usize,
-    const CHANNELS: usize,
-    P: Quantity,
-    I: Inverse,
-    S: AllocationMethod,
->(
-    tables: &Tables<'_, P, I, S>,
-    setpoint: &Wrench,
-    conditions: Conditions,
     health: Health,
 ) -> Result<Mix<CHANNELS>, SetpointError> {
     let mut throttle = [tables.throttle.min; CHANNELS];
-    let mixed = match mix_in_closed_form(tables, setpoint, conditions, health, &mut throttle) {
-        Some(mixed) => mixed,
-        None => {
-            // Not before: the closed form needs no workspace.
-            let mut states = [UnitState::default(); UNITS];
-            mix_in_general(tables, setpoint, conditions, health, &mut states, &mut throttle)
-        }
-    };
-    let (achieved, saturation) = mixed?;
+    let states = || [UnitState::default(); UNITS];
+    let (achieved, saturation) = mix_into(tables, setpoint, conditions, health, states, &mut throttle)?;
     Ok(Mix {
         throttle,
         achieved,
@@ -127,24 +101,24 @@ pub fn mix_with_health<
     })
 }
 
-/// [`mix_with_health`] into buffers, for layouts whose size is known only at run time: `states`
-/// takes one element per unit, `throttle` one value per channel. Units or channels beyond a buffer's
-/// end are left out.
+/// [`mix`] into buffers, for layouts whose size is known only at run time: `states` makes one element
+/// per unit where the closed form does not serve, `throttle` takes one value per channel. Units or
+/// channels beyond a buffer's end are left out.
 ///
 /// # Errors
-/// As [`mix`]; the buffers are then as they were.
+/// As [`mix`]; `throttle` is then as it was.
 #[inline(always)]
-pub fn mix_into<P: Quantity, I: Inverse, S: AllocationMethod>(
+pub fn mix_into<P: Quantity, I: Inverse, S: AllocationMethod, W: AsMut<[UnitState]>>(
     tables: &Tables<'_, P, I, S>,
     setpoint: &Wrench,
     conditions: Conditions,
     health: Health,
-    states: &mut [UnitState],
+    states: impl FnOnce() -> W,
     throttle: &mut [f32],
 ) -> Result<(Wrench, Saturation), SetpointError> {
     match mix_in_closed_form(tables, setpoint, conditions, health, throttle) {
         Some(mixed) => mixed,
-        None => mix_in_general(tables, setpoint, conditions, health, states, throttle),
+        None => mix_in_general(tables, setpoint, conditions, health, states().as_mut(), throttle),
     }
 }
 
@@ -181,8 +155,7 @@ fn mix_in_general<P: Quantity, I: Inverse, S: AllocationMethod>(
         add_power_bias(tables, &bounded, factors, states);
     }
     let mut achieved = [0.0; 4];
-    for (unit, state) in units.iter().zip(states) {
-        rolled();
+    for (unit, state) in rolled(units.iter().zip(states)) {
         write(unit.channels, state.throttles, throttle);
         unit.add_wrench(state.efforts, factors, &mut achieved);
     }
@@ -300,8 +273,8 @@ fn write(channels: [u8; 2], throttles: [f32; 2], outputs: &mut [f32]) {
 /// `request` at the reference voltage, by `[1 / k_f, 1 / k_Q]`: with vertical axes roll, pitch and
 /// thrust come from the thrusts alone and yaw from the torques alone.
 #[inline(always)]
-fn at_reference([roll, pitch, yaw, thrust]: [f32; 4], [per_thrust, per_torque]: [f32; 2]) -> Request {
-    Request {
+fn at_reference([roll, pitch, yaw, thrust]: [f32; 4], [per_thrust, per_torque]: [f32; 2]) -> Asked {
+    Asked {
         roll: roll * per_thrust,
         pitch: pitch * per_thrust,
         yaw: yaw * per_torque,

@@ -73,7 +73,13 @@ pub mod coaxial_bicopter {
         setpoint: &rt::Wrench,
         conditions: impl ::core::convert::Into<rt::Conditions>,
     ) -> ::core::result::Result<rt::Mix<CHANNELS>, rt::SetpointError> {
-        tables::mix::<UNITS, CHANNELS, _, _, _>(&TABLES, setpoint, conditions.into())
+        tables::mix::<
+            UNITS,
+            CHANNELS,
+            _,
+            _,
+            _,
+        >(&TABLES, setpoint, conditions.into(), rt::Health::GOOD)
     }
     /// [`mix`] with the rotors out that `health` names by channel.
     ///
@@ -85,7 +91,7 @@ pub mod coaxial_bicopter {
         conditions: impl ::core::convert::Into<rt::Conditions>,
         health: rt::Health,
     ) -> ::core::result::Result<rt::Mix<CHANNELS>, rt::SetpointError> {
-        tables::mix_with_health::<
+        tables::mix::<
             UNITS,
             CHANNELS,
             _,

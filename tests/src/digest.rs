@@ -16,14 +16,13 @@ pub fn of(compiled: &Compiled, count: usize, rotors_out: u32) -> Vec<u64> {
     for _ in 0..10 {
         for (setpoint, health) in setpoints.by_ref().take(count / 10) {
             let wrench = Wrench::from_array(setpoint.wrench);
-            let mut states = vec![UnitState::default(); tables.units.len()];
             let mut throttle = vec![tables.throttle.min; 2 * tables.units.len()];
             let mixed = mixer_rt::tables::mix_into(
                 &tables,
                 &wrench,
                 setpoint.conditions(),
                 health,
-                &mut states,
+                || vec![UnitState::default(); tables.units.len()],
                 &mut throttle,
             );
             match &mixed {

@@ -133,7 +133,7 @@ impl AllocationMethod for Option<ClosedForm<'_>> {
 
 /// A request at the reference voltage.
 #[derive(Clone, Copy)]
-pub(crate) struct Request {
+pub(crate) struct Asked {
     pub(crate) roll: f32,
     pub(crate) pitch: f32,
     pub(crate) yaw: f32,
@@ -186,7 +186,7 @@ impl ClosedForm<'_> {
     /// Writes the least-norm efforts of `request`. Tells whether all are attainable, and the least
     /// distance of their torques from the sides, N m; negative beyond.
     #[inline(always)]
-    pub(crate) fn least_norm(&self, request: &Request, efforts: &mut Efforts) -> (Attained, f32) {
+    pub(crate) fn least_norm(&self, request: &Asked, efforts: &mut Efforts) -> (Attained, f32) {
         let share = self.torque_share * request.yaw;
         let wrench = [request.roll, request.pitch, request.thrust];
         let (mut attained, mut room) = (Attained::Yes, f32::MAX);
@@ -232,7 +232,7 @@ impl ClosedForm<'_> {
     pub(crate) fn desaturate<const KEEPS_YAW: bool>(
         &self,
         airmode: Airmode,
-        request: &Request,
+        request: &Asked,
         reserve: f32,
         efforts: &mut Efforts,
     ) {

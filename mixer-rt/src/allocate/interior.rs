@@ -105,8 +105,7 @@ impl<P: Quantity, I, S, const VERTICAL: bool> Frame<'_, '_, P, I, S, VERTICAL> {
     fn aim(&self, units: &mut [UnitState]) {
         let (least, span) = (self.tables.throttle.min, self.span());
         let close = CLOSE * span;
-        for unit in units {
-            rolled();
+        for unit in rolled(units) {
             for side in 0..2 {
                 let (low, turns) = (unit.throttles[side] - least, unit.rotors.turns(side));
                 let low = if turns { low } else { 0.5 * span };
@@ -121,8 +120,7 @@ impl<P: Quantity, I, S, const VERTICAL: bool> Frame<'_, '_, P, I, S, VERTICAL> {
     /// are 0.
     #[inline(never)]
     fn begin(&self, request: &Request, units: &mut [UnitState]) -> [f32; 4] {
-        for (unit, table) in units.iter_mut().zip(self.tables.units) {
-            rolled();
+        for (unit, table) in rolled(units.iter_mut().zip(self.tables.units)) {
             unit.columns = request.turned(&self.columns(table));
             unit.unknowns = [Unknown::central(self.span()); 2];
         }
@@ -167,8 +165,7 @@ impl<P: Quantity, I, S, const VERTICAL: bool> Frame<'_, '_, P, I, S, VERTICAL> {
         let rho = RHO / (self.span() * self.span());
         let mut matrix = [0.0; 10];
         let mut missed = request.eliminate(lambda, mu, &mut matrix);
-        for unit in units {
-            rolled();
+        for unit in rolled(units) {
             let Expansion {
                 mut value,
                 slopes,
@@ -215,8 +212,7 @@ impl<P: Quantity, I, S, const VERTICAL: bool> Frame<'_, '_, P, I, S, VERTICAL> {
     #[inline(never)]
     fn correct(&self, request: &Request, units: &mut [UnitState], system: &Factors) {
         let change = system.solve(self.missed(request, units));
-        for unknown in units.iter_mut().flat_map(|unit| &mut unit.unknowns) {
-            rolled();
+        for unknown in rolled(units.iter_mut().flat_map(|unit| &mut unit.unknowns)) {
             unknown.step = 0.0;
         }
         let mut most = SHARE;
@@ -228,8 +224,7 @@ impl<P: Quantity, I, S, const VERTICAL: bool> Frame<'_, '_, P, I, S, VERTICAL> {
     /// largest step over its room.
     #[inline(always)]
     fn respond(&self, units: &mut [UnitState], change: &[f32; 4], most: &mut f32) {
-        for unit in units {
-            rolled();
+        for unit in rolled(units) {
             let gain = Products::<VERTICAL>::gains(&unit.columns, change);
             for (unknown, [f, q]) in unit.unknowns.iter_mut().zip(&unit.slopes) {
                 unknown.respond(f * gain[0] + q * gain[1], most);
@@ -241,8 +236,7 @@ impl<P: Quantity, I, S, const VERTICAL: bool> Frame<'_, '_, P, I, S, VERTICAL> {
     #[inline(never)]
     fn missed(&self, request: &Request, units: &mut [UnitState]) -> [f32; 4] {
         let mut missed = request.left();
-        for unit in units {
-            rolled();
+        for unit in rolled(units) {
             self.place(unit);
             Products::<VERTICAL>::subtract(&unit.columns, unit.efforts, &mut missed);
         }
@@ -275,8 +269,7 @@ fn is_met(missed: &[f32; 4], most: f32) -> bool {
 /// Goes a share of the rotors' steps.
 #[inline(always)]
 fn advance(units: &mut [UnitState], share: f32) {
-    for unit in units {
-        rolled();
+    for unit in rolled(units) {
         for unknown in &mut unit.unknowns {
             unknown.advance(share);
         }

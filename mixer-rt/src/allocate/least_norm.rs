@@ -22,8 +22,7 @@ impl<P: Quantity, I: Inverse, S, const VERTICAL: bool> Frame<'_, '_, P, I, S, VE
     #[inline(never)]
     pub(super) fn serve_by_least_norm(&self, wrench: &[f32; 4], units: &mut [UnitState]) -> bool {
         let mut is_served = true;
-        for (state, unit) in units.iter_mut().zip(self.tables.units) {
-            rolled();
+        for (state, unit) in rolled(units.iter_mut().zip(self.tables.units)) {
             state.efforts = self.least_norm(unit, wrench);
             is_served &= self.invert(state);
         }
@@ -57,8 +56,7 @@ impl<P: Quantity, I: Inverse, S, const VERTICAL: bool> Frame<'_, '_, P, I, S, VE
         if self.serve_by_least_norm(&[0.0, 0.0, 0.0, clamp(thrust, least, most)], units) {
             return;
         }
-        for state in units {
-            rolled();
+        for state in rolled(units) {
             self.place(state);
         }
     }

@@ -84,15 +84,13 @@ impl<P: Quantity, I: Inverse, S, const VERTICAL: bool> Frame<'_, '_, P, I, S, VE
         let (tables, c) = (self.tables, self.tables.power_bias_nm_per_n);
         // What Q = c f would add to the wrench.
         let mut added = [0.0; 4];
-        for (unit, table) in units.iter_mut().zip(tables.units) {
-            rolled();
+        for (unit, table) in rolled(units.iter_mut().zip(tables.units)) {
             unit.efforts = self.least_norm(table, wrench);
             table.add_wrench([0.0, c * unit.efforts[0]], self.factors, &mut added);
         }
         let [least, most] = [tables.throttle.min, tables.throttle.max].map(|end| end * end);
         let mut b = 1.0;
-        for (unit, table) in units.iter_mut().zip(tables.units) {
-            rolled();
+        for (unit, table) in rolled(units.iter_mut().zip(tables.units)) {
             let [f, q] = self.least_norm(table, &added);
             let shift = [-f, c * unit.efforts[0] - q];
             unit.slopes[0] = shift;
@@ -107,8 +105,7 @@ impl<P: Quantity, I: Inverse, S, const VERTICAL: bool> Frame<'_, '_, P, I, S, VE
             }
         }
         let mut is_served = true;
-        for unit in units.iter_mut() {
-            rolled();
+        for unit in rolled(units.iter_mut()) {
             let [f, q] = unit.slopes[0];
             unit.efforts = [unit.efforts[0] + b * f, unit.efforts[1] + b * q];
             is_served &= self.invert(unit);

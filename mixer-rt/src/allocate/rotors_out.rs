@@ -37,8 +37,7 @@ impl<P: Quantity, I: Inverse, S, const VERTICAL: bool> Frame<'_, '_, P, I, S, VE
     pub(super) fn serve_with_rotors_out(&self, wrench: &[f32; 4], units: &mut [UnitState]) -> bool {
         let [by_thrust, by_torque] = self.tables.spread;
         let (mut matrix, mut lost) = ([0.0; 10], [0.0; 4]);
-        for (unit, table) in units.iter_mut().zip(self.tables.units) {
-            rolled();
+        for (unit, table) in rolled(units.iter_mut().zip(self.tables.units)) {
             unit.efforts = self.least_norm(table, wrench);
             unit.columns = self.columns(table);
             if unit.rotors.are_both() {
@@ -51,11 +50,9 @@ impl<P: Quantity, I: Inverse, S, const VERTICAL: bool> Frame<'_, '_, P, I, S, VE
             unit.stop_failed();
         }
         let mut lambda = [0.0; 4];
-        for _ in 0..TANGENTS {
-            rolled();
+        for _ in rolled(0..TANGENTS) {
             let (mut system, mut missed) = (matrix, lost);
-            for unit in units.iter_mut() {
-                rolled();
+            for unit in rolled(units.iter_mut()) {
                 let Some(side) = unit.rotors.single() else {
                     continue;
                 };
@@ -74,8 +71,7 @@ impl<P: Quantity, I: Inverse, S, const VERTICAL: bool> Frame<'_, '_, P, I, S, VE
             if !lambda.iter().all(|row| row.abs() <= UNSERVED) {
                 break;
             }
-            for unit in units.iter_mut() {
-                rolled();
+            for unit in rolled(units.iter_mut()) {
                 let Some(side) = unit.rotors.single() else {
                     continue;
                 };
@@ -96,8 +92,7 @@ impl<P: Quantity, I: Inverse, S, const VERTICAL: bool> Frame<'_, '_, P, I, S, VE
         }
         let is_regular = lambda.iter().all(|row| row.abs() <= UNSERVED);
         let mut is_served = is_regular;
-        for unit in units {
-            rolled();
+        for unit in rolled(units) {
             if unit.rotors.are_both() {
                 if is_regular {
                     let gain = Products::<VERTICAL>::gains(&unit.columns, &lambda);

@@ -5,7 +5,7 @@
 
 use std::fmt::Debug;
 
-use mixer_rt::tables::{Airmode, Inverse, LawPiece, Pair, Priorities, Quantity, Tables, mix_with_health};
+use mixer_rt::tables::{Airmode, Inverse, LawPiece, Pair, Priorities, Quantity, Tables, mix};
 use mixer_rt::{Conditions, Health, Saturation, SetpointError, Wrench};
 
 #[rustfmt::skip]
@@ -142,7 +142,7 @@ macro_rules! frame {
                     Wrench::from_array(request.wrench),
                 );
                 let (conditions, health) = (request.conditions(), request.health);
-                let mix = mix_with_health::<UNITS, CHANNELS, _, _, _>(&tables, &wrench, conditions, health)?;
+                let mix = mix::<UNITS, CHANNELS, _, _, _>(&tables, &wrench, conditions, health)?;
                 Ok(Answer {
                     throttle: mix.throttle.to_vec(),
                     achieved: mix.achieved.to_array(),

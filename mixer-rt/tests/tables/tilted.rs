@@ -77,7 +77,13 @@ pub mod tilted {
         setpoint: &rt::Wrench,
         conditions: impl ::core::convert::Into<rt::Conditions>,
     ) -> ::core::result::Result<rt::Mix<CHANNELS>, rt::SetpointError> {
-        tables::mix::<UNITS, CHANNELS, _, _, _>(&TABLES, setpoint, conditions.into())
+        tables::mix::<
+            UNITS,
+            CHANNELS,
+            _,
+            _,
+            _,
+        >(&TABLES, setpoint, conditions.into(), rt::Health::GOOD)
     }
     /// [`mix`] with the rotors out that `health` names by channel.
     ///
@@ -89,7 +95,7 @@ pub mod tilted {
         conditions: impl ::core::convert::Into<rt::Conditions>,
         health: rt::Health,
     ) -> ::core::result::Result<rt::Mix<CHANNELS>, rt::SetpointError> {
-        tables::mix_with_health::<
+        tables::mix::<
             UNITS,
             CHANNELS,
             _,

@@ -70,13 +70,11 @@ impl ClosedForm<'_> {
         };
         let mut ahead = [none; MOST_CLOSED_FORM_UNITS];
         let mut growth = 0.0;
-        for ((unit, line), ahead) in self.units.iter().zip(lines).zip(&mut ahead) {
-            rolled();
+        for ((unit, line), ahead) in rolled(self.units.iter().zip(lines).zip(&mut ahead)) {
             ahead.outline = self.border.outline(sign * unit.spin);
             ahead.start = line.thrust(start);
             let mut slope = ahead.outline.slope;
-            for knot in &ahead.outline.knots {
-                rolled();
+            for knot in rolled(&ahead.outline.knots) {
                 if knot.thrust_n > ahead.start {
                     break;
                 }
@@ -94,8 +92,7 @@ impl ClosedForm<'_> {
         } else {
             high - start
         };
-        for (line, ahead) in lines.iter().zip(&mut ahead) {
-            rolled();
+        for (line, ahead) in rolled(lines.iter().zip(&mut ahead)) {
             let speed = direction * line.along;
             ahead.speed = speed.abs();
             if speed != 0.0 {
@@ -111,11 +108,10 @@ impl ClosedForm<'_> {
         let level = self.yaw_rounding_nm / self.thrust_n[1];
         let mut way = 0.0;
         while growth > level {
-            rolled();
+            core::hint::black_box(());
             way = end;
             let mut nearest = None;
-            for ahead in &mut ahead {
-                rolled();
+            for ahead in rolled(&mut ahead) {
                 if ahead.next < way {
                     way = ahead.next;
                     nearest = Some(ahead);

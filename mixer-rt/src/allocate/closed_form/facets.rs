@@ -25,8 +25,7 @@ impl ClosedForm<'_> {
     #[inline(always)]
     pub(super) fn share(&self, roll: f32, pitch: f32, ceiling: f32) -> (f32, [f32; 2]) {
         let mut share = 1.0;
-        for Facets { normal, bounds } in self.walls {
-            rolled();
+        for Facets { normal, bounds } in rolled(self.walls) {
             let speed = normal[0] * roll + normal[1] * pitch;
             let limit = if speed > 0.0 { bounds[1] } else { bounds[0] };
             if speed > bounds[1] || speed < bounds[0] {
@@ -40,8 +39,7 @@ impl ClosedForm<'_> {
             // Thrust bounds at this share, and their velocities.
             let (mut low, mut low_speed) = (-f32::MAX, 0.0);
             let (mut high, mut high_speed) = (ceiling, 0.0);
-            for Facets { normal, bounds } in self.slopes {
-                rolled();
+            for Facets { normal, bounds } in rolled(self.slopes) {
                 let speed = normal[0] * roll + normal[1] * pitch;
                 let at = speed * share;
                 if bounds[0] - at > low {

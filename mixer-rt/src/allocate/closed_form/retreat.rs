@@ -42,8 +42,7 @@ impl ClosedForm<'_> {
         needed: f32,
         middle: f32,
     ) -> (f32, [f32; 2]) {
-        for (unit, line) in self.units.iter().zip(lines.iter_mut()) {
-            rolled();
+        for (unit, line) in rolled(self.units.iter().zip(lines.iter_mut())) {
             let thrust = line.thrust(z);
             line.from = unit.allocation[2] * middle;
             line.along = thrust - line.from;
@@ -70,8 +69,7 @@ impl ClosedForm<'_> {
         roomy: &[f32; 3],
     ) -> (f32, [f32; 2]) {
         let mut given = [0.0; MOST_CLOSED_FORM_UNITS];
-        for (line, given) in lines.iter().zip(&mut given) {
-            rolled();
+        for (line, given) in rolled(lines.iter().zip(&mut given)) {
             *given = line.thrust(z);
         }
         let here = furthest(reach, sign);
@@ -82,8 +80,7 @@ impl ClosedForm<'_> {
             let high = if high > low { high } else { low };
             let top = self.top(lines, sign, clamp(z, low, high), [low, high]);
             let most = furthest(self.reach(lines, top), sign);
-            for (line, given) in lines.iter_mut().zip(given) {
-                rolled();
+            for (line, given) in rolled(lines.iter_mut().zip(given)) {
                 line.from = line.thrust(top);
                 line.along = given - line.from;
             }

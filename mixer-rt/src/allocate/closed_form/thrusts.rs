@@ -7,7 +7,7 @@
 //!
 //! Where yaw does not reach what is needed of it, thrust, roll and pitch are given up: retreat.rs.
 
-use super::{ClosedForm, ClosedFormUnit, Request, ThrustLine};
+use super::{Asked, ClosedForm, ClosedFormUnit, ThrustLine};
 use crate::{clamp, divisor, rolled};
 use core::hint::black_box;
 
@@ -42,7 +42,7 @@ impl ClosedForm<'_> {
     #[inline(always)]
     pub(super) fn attainable_thrusts<const KEEPS_YAW: bool>(
         &self,
-        request: &Request,
+        request: &Asked,
         reserve: f32,
         [ceiling, middle]: [f32; 2],
         lines: &mut [ThrustLine],
@@ -143,8 +143,7 @@ impl ClosedForm<'_> {
     #[inline(always)]
     pub(super) fn null_range(&self, lines: &mut [ThrustLine], wrench: &[f32; 3]) -> [f32; 2] {
         let (mut low, mut high) = (-f32::MAX, f32::MAX);
-        for (unit, line) in self.units.iter().zip(lines) {
-            rolled();
+        for (unit, line) in rolled(self.units.iter().zip(lines)) {
             let f = unit.thrust(wrench);
             (line.from, line.along) = (f, unit.null);
             if unit.per_null != 0.0 {

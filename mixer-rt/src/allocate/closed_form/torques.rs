@@ -20,8 +20,7 @@ impl ClosedForm<'_> {
         let yaw = clamp(yaw, reach[0], reach[1]);
         let share = self.torque_share * yaw;
         let mut given = 0.0;
-        for (effort, line) in efforts.iter_mut().zip(lines) {
-            rolled();
+        for (effort, line) in rolled(efforts.iter_mut().zip(lines)) {
             effort.torque = clamp(share, line.least, line.most);
             given += effort.torque;
         }
@@ -29,8 +28,7 @@ impl ClosedForm<'_> {
         let end = if missing < 0.0 { reach[0] } else { reach[1] };
         // Zero where there is no room.
         let part = clamp(quotient(missing, end - given), 0.0, 1.0);
-        for ((unit, effort), line) in self.units.iter().zip(efforts).zip(lines) {
-            rolled();
+        for ((unit, effort), line) in rolled(self.units.iter().zip(efforts).zip(lines)) {
             let p = effort.torque;
             let end = if missing < 0.0 { line.least } else { line.most };
             effort.thrust = line.thrust(z);
