@@ -174,9 +174,9 @@ fn tables(tables: &MixerTables) -> TokenStream {
     let view = tables.view();
     let units = (*view.units).tokens();
     let (pair, singles, inverse) = (view.pair.tokens(), view.singles.tokens(), view.inverse.tokens());
-    let (throttle, rows) = (view.throttle.tokens(), view.rows.tokens());
+    let (throttle, rows) = (view.throttle.tokens(), view.row_scale.tokens());
     let (voltage, air) = (view.voltage.tokens(), view.air.tokens());
-    let (spread, level) = (view.spread.tokens(), view.level_n.tokens());
+    let (spread, level) = (view.mean_square_slopes.tokens(), view.level_n.tokens());
     let (priorities, is_vertical) = (view.priorities.tokens(), view.is_vertical);
     let (power_bias, tolerance) = (view.power_bias_nm_per_n.tokens(), view.tolerance.tokens());
     let (closed_form, closed_form_type) = match &view.closed_form {
@@ -210,8 +210,8 @@ fn tables(tables: &MixerTables) -> TokenStream {
             throttle: #throttle,
             voltage: VOLTAGE,
             air: AIR,
-            rows: #rows,
-            spread: #spread,
+            row_scale: #rows,
+            mean_square_slopes: #spread,
             level_n: #level,
             is_vertical: #is_vertical,
             priorities: #priorities,

@@ -45,10 +45,10 @@ pub struct MixerTables {
     pub throttle: ThrottleRange,
     /// The corrections of voltage and density.
     pub corrections: CorrectionTables,
-    /// Rows per N m and N: [`mixer_rt::tables::Tables::rows`].
-    pub rows: [f32; 4],
-    /// [`mixer_rt::tables::Tables::spread`].
-    pub spread: [f32; 2],
+    /// Rows per N m and N: [`mixer_rt::tables::Tables::row_scale`].
+    pub row_scale: [f32; 4],
+    /// [`mixer_rt::tables::Tables::mean_square_slopes`].
+    pub mean_square_slopes: [f32; 2],
     /// [`mixer_rt::tables::Tables::level_n`].
     pub level_n: [f32; 2],
     /// [`mixer_rt::tables::Tables::is_vertical`].
@@ -160,8 +160,8 @@ impl MixerTables {
             inverse: map.inverse.clone(),
             throttle: map.throttle,
             corrections: parts.corrections.clone(),
-            rows: rows(airframe, effectiveness, parts.pair),
-            spread: parts.pair.spread().map(|spread| spread as f32),
+            row_scale: rows(airframe, effectiveness, parts.pair),
+            mean_square_slopes: parts.pair.mean_square_slopes().map(|mean| mean as f32),
             level_n: [0.0; 2],
             priorities: Priorities {
                 airmode: allocation.airmode,
@@ -193,8 +193,8 @@ impl MixerTables {
             throttle: self.throttle,
             voltage: self.corrections.voltage.as_ref().map(LawTable::view),
             air: self.corrections.air.as_ref().map(LawTable::view),
-            rows: self.rows,
-            spread: self.spread,
+            row_scale: self.row_scale,
+            mean_square_slopes: self.mean_square_slopes,
             level_n: self.level_n,
             is_vertical: self.is_vertical,
             priorities: self.priorities,
@@ -278,8 +278,8 @@ impl MixerTables {
             &view.throttle,
             &view.voltage,
             &view.air,
-            &view.rows,
-            &view.spread,
+            &view.row_scale,
+            &view.mean_square_slopes,
             &view.level_n,
             &view.priorities,
             &view.power_bias_nm_per_n,

@@ -77,9 +77,9 @@ pub struct Tables<'a, P, I, S = NoClosedForm> {
     /// Factors from roll, pitch, yaw (N m) and thrust (N) to the rows of the interior point method:
     /// number of units over the vehicle's authority on the axis at the reference voltage; 0 on axes
     /// that the airframe does not serve.
-    pub rows: [f32; 4],
+    pub row_scale: [f32; 4],
     /// Means over the throttles of f_u^2 + f_l^2 (N^2) and of Q_u^2 + Q_l^2 (N^2 m^2).
-    pub spread: [f32; 2],
+    pub mean_square_slopes: [f32; 2],
     /// Least and largest thrust (N) that least norm delivers without torques, at the reference voltage.
     pub level_n: [f32; 2],
     /// True where thrusts give no yaw, and torques nothing else.

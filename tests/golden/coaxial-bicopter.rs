@@ -482,8 +482,8 @@ pub mod coaxial_bicopter {
         },
         voltage: VOLTAGE,
         air: AIR,
-        rows: [0.0896502, 0.0, 4.595398, 0.040342588],
-        spread: [443.2581, 0.14420184],
+        row_scale: [0.0896502, 0.0, 4.595398, 0.040342588],
+        mean_square_slopes: [443.2581, 0.14420184],
         level_n: [1.2265689, 49.34747],
         is_vertical: true,
         priorities: tables::Priorities {

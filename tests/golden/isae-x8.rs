@@ -600,8 +600,8 @@ pub mod isae_x8 {
         },
         voltage: VOLTAGE,
         air: AIR,
-        rows: [0.12678374, 0.12678374, 4.595398, 0.040342588],
-        spread: [443.2581, 0.14420184],
+        row_scale: [0.12678374, 0.12678374, 4.595398, 0.040342588],
+        mean_square_slopes: [443.2581, 0.14420184],
         level_n: [2.4531379, 98.69494],
         is_vertical: true,
         priorities: tables::Priorities {

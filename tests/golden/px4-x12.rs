@@ -373,8 +373,8 @@ pub mod px4_x12 {
         },
         voltage: VOLTAGE,
         air: AIR,
-        rows: [0.060513884, 0.06987545, 4.595398, 0.040342588],
-        spread: [443.2581, 0.14420184],
+        row_scale: [0.060513884, 0.06987545, 4.595398, 0.040342588],
+        mean_square_slopes: [443.2581, 0.14420184],
         level_n: [3.679707, 148.04239],
         is_vertical: true,
         priorities: tables::Priorities {

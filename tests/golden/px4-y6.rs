@@ -514,8 +514,8 @@ pub mod px4_y6 {
         },
         voltage: VOLTAGE,
         air: AIR,
-        rows: [0.13975492, 0.12102777, 4.595398, 0.040342588],
-        spread: [443.2581, 0.14420184],
+        row_scale: [0.13975492, 0.12102777, 4.595398, 0.040342588],
+        mean_square_slopes: [443.2581, 0.14420184],
         level_n: [1.8398535, 74.021194],
         is_vertical: true,
         priorities: tables::Priorities {

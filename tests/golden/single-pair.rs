@@ -437,8 +437,8 @@ pub mod single_pair {
         },
         voltage: VOLTAGE,
         air: AIR,
-        rows: [0.0, 0.0, 4.595398, 0.040342588],
-        spread: [443.2581, 0.14420184],
+        row_scale: [0.0, 0.0, 4.595398, 0.040342588],
+        mean_square_slopes: [443.2581, 0.14420184],
         level_n: [0.61331594, 24.673765],
         is_vertical: true,
         priorities: tables::Priorities {

@@ -676,8 +676,8 @@ pub mod x8_11in_cubic {
         },
         voltage: VOLTAGE,
         air: AIR,
-        rows: [0.2616082, 0.2616082, 4.76171, 0.055495482],
-        spread: [227.60522, 0.11379245],
+        row_scale: [0.2616082, 0.2616082, 4.76171, 0.055495482],
+        mean_square_slopes: [227.60522, 0.11379245],
         level_n: [2.2240434, 69.13363],
         is_vertical: true,
         priorities: tables::Priorities {

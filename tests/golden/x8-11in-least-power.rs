@@ -709,8 +709,8 @@ pub mod x8_11in_least_power {
         },
         voltage: VOLTAGE,
         air: AIR,
-        rows: [0.23348309, 0.23348309, 4.3606005, 0.049529243],
-        spread: [321.62103, 0.15172847],
+        row_scale: [0.23348309, 0.23348309, 4.3606005, 0.049529243],
+        mean_square_slopes: [321.62103, 0.15172847],
         level_n: [2.339436, 76.87981],
         is_vertical: true,
         priorities: tables::Priorities {

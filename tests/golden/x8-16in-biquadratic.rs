@@ -596,8 +596,8 @@ pub mod x8_16in_biquadratic {
         },
         voltage: VOLTAGE,
         air: AIR,
-        rows: [0.07478874, 0.07478874, 1.804133, 0.023797631],
-        spread: [1275.6128, 0.83707935],
+        row_scale: [0.07478874, 0.07478874, 1.804133, 0.023797631],
+        mean_square_slopes: [1275.6128, 0.83707935],
         level_n: [2.7144427, 163.26555],
         is_vertical: true,
         priorities: tables::Priorities {

@@ -626,8 +626,8 @@ pub mod x8_16in_quartic {
         },
         voltage: VOLTAGE,
         air: AIR,
-        rows: [0.07802991, 0.07802991, 2.0053651, 0.024828965],
-        spread: [1383.7974, 0.9121876],
+        row_scale: [0.07802991, 0.07802991, 2.0053651, 0.024828965],
+        mean_square_slopes: [1383.7974, 0.9121876],
         level_n: [11.306555, 156.33595],
         is_vertical: true,
         priorities: tables::Priorities {

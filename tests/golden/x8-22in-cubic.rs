@@ -624,8 +624,8 @@ pub mod x8_22in_cubic {
         },
         voltage: VOLTAGE,
         air: AIR,
-        rows: [0.040163998, 0.040163998, 0.8869217, 0.01704014],
-        spread: [3038.3923, 4.218725],
+        row_scale: [0.040163998, 0.040163998, 0.8869217, 0.01704014],
+        mean_square_slopes: [3038.3923, 4.218725],
         level_n: [22.410816, 219.96385],
         is_vertical: true,
         priorities: tables::Priorities {

@@ -14,7 +14,7 @@ use mixer_identify::identified::Settings;
 use mixer_identify::plan::CORRECTING;
 use mixer_identify::rotor::interaction::{Interaction, OPEN_LOOP};
 use mixer_identify::rotor::posterior::{self, BETWEEN_SYSTEMS, Case, Deviations, ROW, scaled};
-use mixer_identify::rotor::single::{Known, Single};
+use mixer_identify::rotor::single::{RunFacts, Single};
 
 use crate::root;
 
@@ -152,7 +152,7 @@ pub fn measure(data: &Path) -> Result<Measured, String> {
     let mut beds = Vec::new();
     for system in &SYSTEMS {
         let run = read(system.run)?;
-        let single = single(&run, &Known::default())?;
+        let single = single(&run, &RunFacts::default())?;
         let mut maps = Vec::new();
         for (part, spacing_ratio) in system.maps {
             // As the run: at one voltage.
@@ -194,7 +194,7 @@ pub fn measure(data: &Path) -> Result<Measured, String> {
     Ok(Measured { rows, constants })
 }
 
-fn single(run: &Bench, known: &Known) -> Result<Single, String> {
+fn single(run: &Bench, known: &RunFacts) -> Result<Single, String> {
     Single::of(run, known, &mut Vec::new()).map_err(|refusal| refusal.to_string())
 }
 
@@ -247,14 +247,14 @@ impl Bed {
         });
         let mut table = self.run.clone();
         table.points.retain(|p| nearest(&self.run.points, p, &FIVE));
-        let at_one_voltage = Known {
+        let at_one_voltage = RunFacts {
             reference_v: self.single.voltage_v,
-            ..Known::default()
+            ..RunFacts::default()
         };
         let five = single(&table, &at_one_voltage)?.rotor;
         let mut blank = self.run.clone();
         blank.points.iter_mut().for_each(|p| p.torque = f64::NAN);
-        let known = Known {
+        let known = RunFacts {
             diameter_m: Some(self.diameter_m),
             ..at_one_voltage
         };

@@ -28,7 +28,7 @@ impl LevelYaw {
     /// Least and largest yaw (N m) of level flight at a thrust (N) and a voltage (V), the rotor of a channel out; `None`
     /// where there is no such flight, or yaw is not served.
     pub(crate) fn at(&self, volts: f32, thrust_n: f32, channel: u8) -> Option<[f64; 2]> {
-        let [by_roll, by_pitch, by_yaw, by_thrust] = self.0.rows;
+        let [by_roll, by_pitch, by_yaw, by_thrust] = self.0.row_scale;
         let slack = MISSED * self.0.units.len() as f32;
         // More than all that there is.
         let yaw = |sense: f32| {

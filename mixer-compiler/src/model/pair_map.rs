@@ -194,7 +194,7 @@ impl PairMap {
     }
 
     /// Means over the box of f_u^2 + f_l^2 (N^2) and of Q_u^2 + Q_l^2 (N^2 m^2): what a throttle changes.
-    pub(crate) fn spread(&self) -> [f64; 2] {
+    pub(crate) fn mean_square_slopes(&self) -> [f64; 2] {
         const POINTS: usize = 16;
         let [low, high] = self.range;
         let at = |k: usize| low + (high - low) * (k as f64 + 0.5) / POINTS as f64;

@@ -37,7 +37,11 @@ impl<'a, 't, P, I, S, const VERTICAL: bool> Frame<'a, 't, P, I, S, VERTICAL> {
     #[inline(always)]
     pub(super) fn columns(&self, unit: &Unit) -> Columns {
         let [mut by_thrust, mut by_torque] = unit.effectiveness;
-        for ((thrust, torque), row) in by_thrust.iter_mut().zip(&mut by_torque).zip(self.tables.rows) {
+        for ((thrust, torque), row) in by_thrust
+            .iter_mut()
+            .zip(&mut by_torque)
+            .zip(self.tables.row_scale)
+        {
             *thrust *= row;
             *torque *= self.ratio * row;
         }

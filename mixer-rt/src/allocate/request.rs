@@ -41,7 +41,7 @@ pub(super) struct Shortage {
     unknown: Unknown,
     /// Rows, signed.
     width: f32,
-    /// Of the whole width.
+    /// Of the whole width, c_j w_j.
     cost: f32,
 }
 
@@ -118,7 +118,7 @@ impl Request {
         [per_thrust, ratio]: [f32; 2],
         yaw: Yaw,
     ) -> Self {
-        let rows = tables.rows.map(|row| row * per_thrust);
+        let rows = tables.row_scale.map(|row| row * per_thrust);
         let mut asked = *wrench;
         for (asked, row) in asked.iter_mut().zip(rows) {
             *asked *= row;

@@ -7,7 +7,7 @@
 //!
 //! y* are the efforts of least norm of the whole frame (M+ w), t* the throttle that a single rotor has
 //! there, D_f and D_Q the mean of f_u^2 + f_l^2 and of Q_u^2 + Q_l^2 over the throttles
-//! (`Tables::spread`): so both sums count squares of throttles. A unit with both rotors answers
+//! (`Tables::mean_square_slopes`): so both sums count squares of throttles. A unit with both rotors answers
 //! multipliers lambda of the rows by dy = D B^T lambda, a single rotor along its tangent by t - t* =
 //! y'^T B^T lambda: one system of four rows per tangent. The inverse map turns the efforts into
 //! throttles. Whether all units then give them is checked, so no convexity is needed.
@@ -35,7 +35,7 @@ impl<P: Quantity, I: Inverse, S, const VERTICAL: bool> Frame<'_, '_, P, I, S, VE
     /// Writes throttles that are nearest those of the whole frame; true where they give the wrench.
     #[inline(never)]
     pub(super) fn serve_with_rotors_out(&self, wrench: &[f32; 4], units: &mut [UnitState]) -> bool {
-        let [by_thrust, by_torque] = self.tables.spread;
+        let [by_thrust, by_torque] = self.tables.mean_square_slopes;
         let (mut matrix, mut lost) = ([0.0; 10], [0.0; 4]);
         for (unit, table) in rolled(units.iter_mut().zip(self.tables.units)) {
             unit.efforts = self.least_norm(table, wrench);
@@ -60,7 +60,7 @@ impl<P: Quantity, I: Inverse, S, const VERTICAL: bool> Frame<'_, '_, P, I, S, VE
                 let [value, slope, half] = self.tables.singles[side].expansion(throttle);
                 let back = unit.targets[side] - throttle;
                 unit.slopes[side] = slope;
-                unit.bend = divided(4.0 * half[0], larger(slope[0], LEAST_RISE));
+                unit.curvature_per_slope = divided(4.0 * half[0], larger(slope[0], LEAST_RISE));
                 // The efforts of the tangent at the target.
                 unit.efforts = [value[0] + slope[0] * back, value[1] + slope[1] * back];
                 let [f, q] = slope;
@@ -83,7 +83,7 @@ impl<P: Quantity, I: Inverse, S, const VERTICAL: bool> Frame<'_, '_, P, I, S, VE
                 unit.efforts = [unit.efforts[0] + f * moved, unit.efforts[1] + q * moved];
                 // The throttle of that thrust: exact for a parabola.
                 let step = moved + unit.targets[side] - unit.throttles[side];
-                let rooted = 0.5 + 0.5 * sqrt(larger(1.0 + unit.bend * step, LEAST_SQUARE));
+                let rooted = 0.5 + 0.5 * sqrt(larger(1.0 + unit.curvature_per_slope * step, LEAST_SQUARE));
                 unit.throttles[side] = self
                     .tables
                     .throttle

@@ -19,12 +19,12 @@ pub struct UnitState {
     pub(super) columns: [[f32; 4]; 2],
     /// The rotors' throttles as unknowns.
     pub(super) unknowns: [Unknown; 2],
-    /// `[f, Q]` per throttle of each rotor.
+    /// `[f, Q]` per throttle of each rotor; of least power the first is its shift of the efforts.
     pub(super) slopes: [[f32; 2]; 2],
     /// Throttles that the answer is drawn to.
     pub(super) targets: [f32; 2],
-    /// Of a single rotor: twice the relative change of its thrust's slope per throttle.
-    pub(super) bend: f32,
+    /// Of a single rotor: 2 f'' / f' of its thrust f over the throttle.
+    pub(super) curvature_per_slope: f32,
 }
 
 impl UnitState {
@@ -52,7 +52,7 @@ impl Default for UnitState {
             unknowns: [Unknown::central(zero); 2],
             slopes: [[zero; 2]; 2],
             targets: [zero; 2],
-            bend: zero,
+            curvature_per_slope: zero,
         }
     }
 }

@@ -112,8 +112,8 @@ fn common<P, I, S>(tables: &Tables<'static, P, I, S>) -> Tables<'static, (), (),
         throttle: tables.throttle,
         voltage: tables.voltage,
         air: tables.air,
-        rows: tables.rows,
-        spread: tables.spread,
+        row_scale: tables.row_scale,
+        mean_square_slopes: tables.mean_square_slopes,
         level_n: tables.level_n,
         is_vertical: tables.is_vertical,
         priorities: tables.priorities,
@@ -190,7 +190,9 @@ impl Frame {
 
     /// The most of each axis at the reference voltage, N m and N.
     pub fn authority(&self) -> [f32; 4] {
-        self.tables.rows.map(|row| self.tables.units.len() as f32 / row)
+        self.tables
+            .row_scale
+            .map(|row| self.tables.units.len() as f32 / row)
     }
 
     /// What an axis may be off without a fault, N m and N.

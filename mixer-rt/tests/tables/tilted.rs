@@ -418,8 +418,8 @@ pub mod tilted {
         },
         voltage: VOLTAGE,
         air: AIR,
-        rows: [0.16757365, 0.19349739, 0.68405133, 0.05604087],
-        spread: [227.60522, 0.11379245],
+        row_scale: [0.16757365, 0.19349739, 0.68405133, 0.05604087],
+        mean_square_slopes: [227.60522, 0.11379245],
         level_n: [3.3005285, 102.693695],
         is_vertical: false,
         priorities: tables::Priorities {

@@ -255,13 +255,13 @@ pub struct AirArgs {
 
 impl AirArgs {
     /// The air, where it is given.
-    pub fn air(&self) -> Option<air::Known> {
+    pub fn air(&self) -> Option<air::BenchAir> {
         let weather = self.temperature.zip(self.pressure);
-        let of_density = |density_kg_m3| air::Known {
+        let of_density = |density_kg_m3| air::BenchAir {
             density_kg_m3,
             from: "--density".to_owned(),
         };
-        let of_weather = weather.and_then(|(t, p)| air::Known::of_weather(t, p).ok());
+        let of_weather = weather.and_then(|(t, p)| air::BenchAir::of_weather(t, p).ok());
         self.density.map(of_density).or(of_weather)
     }
 }

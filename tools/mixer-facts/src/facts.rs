@@ -77,14 +77,14 @@ impl List {
 
 impl Fact {
     /// For the verdict, if `so`.
-    fn first_if(&mut self, so: bool) -> &mut Self {
+    fn in_verdict_if(&mut self, so: bool) -> &mut Self {
         self.in_verdict = so;
         self
     }
 
     /// For the verdict.
-    fn first(&mut self) -> &mut Self {
-        self.first_if(true)
+    fn in_verdict(&mut self) -> &mut Self {
+        self.in_verdict_if(true)
     }
 
     fn json(&mut self, key: &'static str, value: impl Serialize) -> &mut Self {
@@ -127,7 +127,7 @@ pub fn facts(compiled: &Compiled) -> Vec<Fact> {
     inverse(&mut list, compiled);
     costs(&mut list, compiled);
     let warnings = mixer_compiler::lint(compiled).faults().len();
-    list.say("warnings", warnings, "", "").first();
+    list.say("warnings", warnings, "", "").in_verdict();
     list.0
 }
 
@@ -145,12 +145,12 @@ fn gives(list: &mut List, compiled: &Compiled) {
     let words = or_nothing(description, |text| format!(": {text}"));
     list.say("airframe", &airframe.name, "", words)
         .json("name", &airframe.name)
-        .first();
+        .in_verdict();
     let words = format!(" in {units} coaxial units");
     list.say("rotors", airframe.rotors(), "", words)
         .json("units", units)
         .json("rotors", airframe.rotors())
-        .first();
+        .in_verdict();
     let frame = airframe.units.iter().map(|unit| {
         let outputs = [unit.upper_channel, unit.lower_channel];
         (unit.position_m, unit.upper_spin, outputs)
@@ -159,10 +159,10 @@ fn gives(list: &mut List, compiled: &Compiled) {
     let lines: Vec<String> = frame.chunks(UNITS_A_LINE).map(|units| units.join("; ")).collect();
     list.say("frame", "", "", lines.join(&format!(";\n{:20}", "")))
         .json("frame", frame.join("; "))
-        .first();
+        .in_verdict();
     list.say("served axes", axes.join(", "), "", "")
         .json("axes", &axes)
-        .first();
+        .in_verdict();
     let words = format!("; rank {} of {} served axes", m.rank, axes.len());
     list.say("condition of M", format!("{:.4}", m.condition), "", words)
         .json("rank", m.rank)
@@ -174,14 +174,14 @@ fn gives(list: &mut List, compiled: &Compiled) {
     let words = format!(" without torque{at}");
     list.say("bare thrust", format!("{floor:.1} to {ceiling:.1}"), "N", words)
         .json("thrust_range_n", [floor, ceiling])
-        .first();
+        .in_verdict();
     let throttle = format!("{:?} to {:?}", airframe.throttle.min, airframe.throttle.max);
     let (share, needed) = (100.0 * floor / ceiling, (1e3 * compiled.least_idle).ceil() / 1e3);
     let words =
         format!("; idle gives {share:.1} % of the largest thrust, the map needs {needed:.3} at least");
     list.say("throttle", throttle, "", words)
         .json("min_idle", compiled.least_idle)
-        .first();
+        .in_verdict();
 
     for margin in HoverAt::new(compiled, SHARE * ceiling, reference_v).margins {
         let name = match margin.axis {
@@ -207,16 +207,16 @@ fn hover(list: &mut List, compiled: &Compiled) {
         }
     }
     .json("hover", &hover)
-    .first();
+    .in_verdict();
     let Some(hover) = hover else { return };
     let over_weight = format!("{:.2}", hover.thrust_over_weight);
     list.say("thrust over weight", over_weight, "", " at most")
-        .first();
+        .in_verdict();
     for (at, name) in hover.at.iter().rev().zip(["hover", "hover, lowest V"]) {
         let volts = or_nothing(at.voltage_v, |volts| format!(" at {volts:?} V"));
         let (Some(upper), Some(lower)) = (at.upper_throttle, at.lower_throttle) else {
             let words = format!("the weight is not carried{volts}");
-            list.say(name, "", "", words).first();
+            list.say(name, "", "", words).in_verdict();
             continue;
         };
         let left = at.margins.iter().map(|margin| {
@@ -232,7 +232,7 @@ fn hover(list: &mut List, compiled: &Compiled) {
         });
         let words = format!(" throttle of upper, lower rotors{volts}{left}{band}");
         list.say(name, format!("{upper:.3}, {lower:.3}"), "", words)
-            .first();
+            .in_verdict();
     }
     let Some(at) = hover.at.last().filter(|at| !at.rotor_out.is_empty()) else {
         return;
@@ -252,7 +252,7 @@ fn hover(list: &mut List, compiled: &Compiled) {
         "{}; yaw reserve {reserve} N m",
         each.collect::<Vec<_>>().join(", ")
     );
-    list.say("hover, rotor out", "", "", words).first();
+    list.say("hover, rotor out", "", "", words).in_verdict();
 }
 
 /// A rotor out, and power in level flight.
@@ -295,7 +295,7 @@ fn power(list: &mut List, compiled: &Compiled) {
     });
     let words = format!(" at {:.2} N ({what}){saving}", power.thrust_n);
     list.say("power", format!("{:.1}", power.power_w), "W", words)
-        .first();
+        .in_verdict();
     let [upper, lower] = power.stop_percent;
     let instead = or_nothing(without, |_| {
         let [upper, lower] = power.without_bias_stop_percent;
@@ -304,7 +304,8 @@ fn power(list: &mut List, compiled: &Compiled) {
     let words = format!(
         " of its unit's thrust lost with a lower rotor until it is left out, {upper:.0} % with an upper one{instead}"
     );
-    list.say("rotor stops", format!("{lower:.0}"), "%", words).first();
+    list.say("rotor stops", format!("{lower:.0}"), "%", words)
+        .in_verdict();
 }
 
 /// The pair's map.
@@ -322,7 +323,7 @@ fn model(list: &mut List, compiled: &Compiled) {
     let uncertainty = uncertainty
         .map(|(source, f, q)| json!({ "source": source, "thrust_percent": f, "torque_percent": q }));
     list.say("pair", pair.basis.name(), "", words)
-        .first_if(uncertainty.is_some())
+        .in_verdict_if(uncertainty.is_some())
         .json("uncertainty", uncertainty);
     let border = compiled.pair.border(SAMPLES).into_iter();
     let efforts: Vec<[f64; 2]> = border.map(|at| compiled.pair.efforts(at)).collect();
@@ -345,14 +346,14 @@ fn model(list: &mut List, compiled: &Compiled) {
 fn voltage(list: &mut List, compiled: &Compiled) {
     let Some(voltage) = &compiled.airframe.voltage else {
         let words = "not corrected for: no [voltage]; a pack that falls by 20 % loses 32 % of thrust";
-        list.say("voltage", "", "", words).first();
+        list.say("voltage", "", "", words).in_verdict();
         return;
     };
     let [low, high] = voltage.range;
     let [[f_low, q_low], [f_high, q_high]] = [low, high].map(|volts| voltage.factors(volts));
     let words = format!("; k_f {f_low:.4} to {f_high:.4}, k_Q {q_low:.4} to {q_high:.4} over the range");
     list.say("voltage", format!("{low} to {high}"), "V", " is corrected for")
-        .first();
+        .in_verdict();
     list.say("reference voltage", voltage.reference, "V", words);
 }
 
@@ -373,7 +374,7 @@ fn air(list: &mut List, compiled: &Compiled) {
         }
     };
     let has_altitudes = air.as_ref().is_some_and(|air| !air.altitudes.is_empty());
-    density.json("air", &air).first_if(!has_altitudes);
+    density.json("air", &air).in_verdict_if(!has_altitudes);
     if let Some((air, _)) = with_air {
         let ([thrust, torque], [of_thrust, of_torque]) = (air.exponents, air.exponents_from);
         let words = format!("; exponents {thrust} of thrust ({of_thrust}), {torque} of torque ({of_torque})");
@@ -386,7 +387,9 @@ fn air(list: &mut List, compiled: &Compiled) {
 
 /// How high the vehicle flies.
 fn ceiling(list: &mut List, air: &Air) {
-    let Some(sea) = air.altitudes.first() else { return };
+    let Some(sea) = air.altitudes.first() else {
+        return;
+    };
     let ceiling = match air.ceiling_m {
         Some(ceiling) => format!("{:.0}", 10.0 * (0.1 * ceiling).round()),
         None if sea.thrust_over_weight < LEAST_THRUST_OVER_WEIGHT => "below 0".to_owned(),
@@ -409,7 +412,7 @@ fn ceiling(list: &mut List, air: &Air) {
     let words = format!(
         ", thrust over weight {LEAST_THRUST_OVER_WEIGHT}; at {altitudes} m it is {over_weight}, hover throttle {throttle}; {corrected}"
     );
-    list.say("ceiling", ceiling, "m", words).first();
+    list.say("ceiling", ceiling, "m", words).in_verdict();
 }
 
 /// The inverse map: what is proven of it, and its tables.
@@ -443,7 +446,7 @@ fn inverse(list: &mut List, compiled: &Compiled) {
         list.say(name, rounded_up(proven), unit, words)
             .json(proven_key, proven)
             .json(observed_key, observed)
-            .first();
+            .in_verdict();
     }
     let (left, points) = (100.0 * certificate.margin(), residual.points);
     let words = format!("; {left:.1} % of the tolerance left, {points} efforts observed");
@@ -474,7 +477,7 @@ fn inverse(list: &mut List, compiled: &Compiled) {
     });
     list.say("tables", compiled.tables.bytes(), "bytes", words)
         .json("table_bytes", compiled.tables.bytes())
-        .first();
+        .in_verdict();
 }
 
 /// What costs are counted in.
@@ -506,11 +509,11 @@ fn costs(list: &mut List, compiled: &Compiled) {
     list.count("mix by least norm", cost.delivered_instructions, delivered);
     // On the general path it depends on the frame too much.
     if let Some(mean) = cost.attainable_instructions {
-        list.count("mix in the mean", Some(mean), attainable).first();
+        list.count("mix in the mean", Some(mean), attainable).in_verdict();
     }
     let bound = cost.bound_instructions;
     list.count("mix of any request", bound, any)
-        .first_if(bound.is_some());
+        .in_verdict_if(bound.is_some());
     let out = " at most, however many".to_owned();
     list.count("mix, rotors out", cost.bound_with_rotors_out_instructions, out);
 }

@@ -9,7 +9,7 @@
 use serde::Serialize;
 
 use crate::bench::Bench;
-use crate::bench::air::Known;
+use crate::bench::air::BenchAir;
 use crate::rotor::single::EXPONENT;
 use crate::statistics::extent;
 
@@ -37,7 +37,7 @@ pub struct Air {
 impl Air {
     /// The air of files whose thrust and torque follow it by `exponents`.
     pub fn of<'a>(benches: impl IntoIterator<Item = &'a Bench>, exponents: [f64; 2]) -> Air {
-        let known: Vec<&Known> = benches.into_iter().filter_map(|b| b.air.as_ref()).collect();
+        let known: Vec<&BenchAir> = benches.into_iter().filter_map(|b| b.air.as_ref()).collect();
         let densities = || known.iter().map(|k| k.density_kg_m3);
         let mean = densities().sum::<f64>() / known.len() as f64;
         let mut from: Vec<&str> = known.iter().map(|k| k.from.as_str()).collect();

@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde::Serialize;
 
-use self::air::{DENSITIES, Known};
+use self::air::{BenchAir, DENSITIES};
 use self::header::Columns;
 use self::read::{Fault, Log, RefusedRow, Sample, refused_told};
 use self::sign::{SignPolicy, Signs};
@@ -110,7 +110,7 @@ pub struct Bench {
     /// Signs applied.
     pub signs: Signs,
     /// The air, where its density is known.
-    pub air: Option<Known>,
+    pub air: Option<BenchAir>,
     /// What the load cells read at rest, where it was taken off.
     pub tare: Vec<String>,
     /// Offsets of the load cells at rest that remain in the points.
@@ -161,14 +161,14 @@ pub struct Preparation {
     pub signs: SignPolicy,
     /// Whether what the load cells read at rest is taken off.
     pub tare: bool,
-    /// Whether these are a few rows of a pair on top of a prediction: they may lack their torque, and one
-    /// throttle is that of both rotors.
-    pub torque_may_lack: bool,
+    /// Whether these few rows of a pair correct a prediction: they may lack their torque, and one throttle
+    /// is that of both rotors.
+    pub is_correction: bool,
     /// Whether a run of one rotor is of that rotor, not of the whole: what it drives through the
     /// one at rest, which has a drag, is then left aside.
     pub own_columns: bool,
     /// The air of the bench, given by hand; else of columns where there are any.
-    pub air: Option<Known>,
+    pub air: Option<BenchAir>,
 }
 
 /// Throttle at or below which a rotor stands still.
@@ -199,8 +199,8 @@ pub fn prepare(log: Log, how: &Preparation) -> Result<Bench, Refusal> {
         given => given.clone(),
     };
     // A stand that drives both rotors by one signal.
-    let one_signal = columns[Quantity::Throttle].rotors[1].is_none()
-        && (how.torque_may_lack || of_both(&columns, &samples));
+    let one_signal =
+        columns[Quantity::Throttle].rotors[1].is_none() && (how.is_correction || of_both(&columns, &samples));
     if one_signal {
         samples.iter_mut().for_each(|s| s.throttle[1] = s.throttle[0]);
     }
@@ -258,7 +258,7 @@ pub fn prepare(log: Log, how: &Preparation) -> Result<Bench, Refusal> {
         ));
     }
 
-    let may_lack = how.torque_may_lack || one_signal;
+    let may_lack = how.is_correction || one_signal;
     let (signs, sums) = match kind {
         Kind::Pair => {
             notes.extend(uneven_levels(&samples));
@@ -339,7 +339,7 @@ pub fn prepare(log: Log, how: &Preparation) -> Result<Bench, Refusal> {
 }
 
 /// The air by the columns of a file.
-fn plausible(name: &str, air: Known) -> Result<Known, Refusal> {
+fn plausible(name: &str, air: BenchAir) -> Result<BenchAir, Refusal> {
     let ([low, high], density) = (DENSITIES, air.density_kg_m3);
     if (low..=high).contains(&density) {
         return Ok(air);

@@ -17,11 +17,11 @@ use super::rotor::{Alone, Turning};
 
 /// Where a fact is told.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Told {
+pub enum Detail {
     /// In every report and in the tables.
     Always,
     /// In the long report and in the tables.
-    Detail,
+    Long,
     /// In reports only.
     Reported,
 }
@@ -36,7 +36,7 @@ pub struct Fact {
     /// The words.
     pub text: String,
     /// Where it is told.
-    pub told: Told,
+    pub told: Detail,
 }
 
 /// A list in the making, of one table at a time.
@@ -47,7 +47,7 @@ struct Facts {
 }
 
 impl Facts {
-    fn add(&mut self, told: Told, name: &'static str, text: impl Into<String>) {
+    fn add(&mut self, told: Detail, name: &'static str, text: impl Into<String>) {
         let (table, text) = (self.table, text.into());
         self.all.push(Fact {
             table,
@@ -58,12 +58,12 @@ impl Facts {
     }
 
     fn always(&mut self, name: &'static str, text: impl Into<String>) {
-        self.add(Told::Always, name, text);
+        self.add(Detail::Always, name, text);
     }
 
     /// A detail of what was said before.
     fn more(&mut self, text: impl Into<String>) {
-        self.add(Told::Detail, "", text);
+        self.add(Detail::Long, "", text);
     }
 }
 
@@ -77,14 +77,18 @@ const MOST_FILES: usize = 4;
 pub fn of_identified(identified: &Identified) -> Vec<Fact> {
     let mut facts = Facts::default();
     for (k, file) in identified.files.iter().enumerate() {
-        let told = [Told::Always, Told::Detail][usize::from(k >= MOST_FILES)];
+        let told = if k < MOST_FILES {
+            Detail::Always
+        } else {
+            Detail::Long
+        };
         facts.add(told, "read", format!("{}: {}", file.file, provenance(file)));
         facts.more(signs(file));
         file.tare.iter().for_each(|tare| facts.add(told, "tare", tare));
     }
     let more = identified.files.len().saturating_sub(MOST_FILES);
     if more > 0 {
-        facts.add(Told::Reported, "read", format!("and {more} files more"));
+        facts.add(Detail::Reported, "read", format!("and {more} files more"));
     }
     if let Some(pair) = &identified.pair {
         of_pair(&mut facts, pair);
@@ -191,8 +195,8 @@ fn of_pair(facts: &mut Facts, pair: &Pair) {
         );
         facts.more(text);
     }
-    facts.add(Told::Detail, "fit of thrust", of_fit(thrust, "N"));
-    facts.add(Told::Detail, "fit of torque", of_fit(torque, "N m"));
+    facts.add(Detail::Long, "fit of thrust", of_fit(thrust, "N"));
+    facts.add(Detail::Long, "fit of torque", of_fit(torque, "N m"));
     let [u, l] = thrust.prediction.greatest_at;
     let text = format!(
         "{} points, {} degrees of freedom, condition number {:.1}; prediction widest at ({u:.2}, {l:.2})",
@@ -206,7 +210,7 @@ fn of_pair(facts: &mut Facts, pair: &Pair) {
     }
     if runs(pair).next().is_none() {
         let text = "by the map, extrapolated to a throttle of 0 (--lower-out, --upper-out take runs)";
-        facts.add(Told::Reported, "rotor out", text);
+        facts.add(Detail::Reported, "rotor out", text);
     }
     runs(pair).for_each(|(turning, alone)| of_alone(facts, turning, alone));
 }

@@ -6,7 +6,7 @@ use std::iter::{once, repeat};
 use mixer_compiler::diagnostic::{printable, wrapped};
 use toml_edit::{DocumentMut, value};
 
-use super::fact::{Fact, Told, of_identified, of_predicted, runs};
+use super::fact::{Detail, Fact, of_identified, of_predicted, runs};
 use super::fit::power::Power;
 use super::fit::{Fit, hundredths};
 use super::identified::Identified;
@@ -221,7 +221,7 @@ pub fn of_prediction(predicted: &Predicted) -> String {
 
 /// The facts about a table.
 fn comments(facts: &[Fact], table: &str) -> String {
-    let is_told = |fact: &&Fact| fact.table == table && fact.told != Told::Reported;
+    let is_told = |fact: &&Fact| fact.table == table && fact.told != Detail::Reported;
     let line = |fact: &Fact| match fact.name {
         "" => comment("  ", &fact.text),
         name => comment("", &format!("{name}: {}", fact.text)),

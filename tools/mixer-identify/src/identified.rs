@@ -10,7 +10,7 @@ use crate::fit::hundredths;
 use crate::fit::pair::{self, Pair};
 use crate::fit::power::{self, Power};
 use crate::fit::voltage::{self, Exponent, PLAUSIBLE, Voltage};
-use crate::fit::wishes::Wishes;
+use crate::fit::wishes::FitOptions;
 use crate::refusal::Refusal;
 use crate::rotor::Turning;
 use crate::rotor::alone;
@@ -24,7 +24,7 @@ pub struct Settings {
     /// How rows become points.
     pub preparation: Preparation,
     /// How points are fitted.
-    pub wishes: Wishes,
+    pub wishes: FitOptions,
     /// `reading` and `preparation` as options of `cargo mixer identify`, which the tables remember.
     pub options: Vec<String>,
 }
@@ -68,7 +68,7 @@ impl Identified {
 }
 
 /// Identifies what benches hold that have been read.
-pub fn from_benches(benches: Vec<Bench>, wishes: &Wishes) -> Result<Identified, Refusal> {
+pub fn from_benches(benches: Vec<Bench>, wishes: &FitOptions) -> Result<Identified, Refusal> {
     with_runs(benches, [None, None], wishes)
 }
 
@@ -76,7 +76,7 @@ pub fn from_benches(benches: Vec<Bench>, wishes: &Wishes) -> Result<Identified, 
 pub fn with_runs(
     mut benches: Vec<Bench>,
     mut runs: [Option<Bench>; 2],
-    wishes: &Wishes,
+    wishes: &FitOptions,
 ) -> Result<Identified, Refusal> {
     distinct_names(&benches)?;
     let of_air = match wishes.closed_loop {

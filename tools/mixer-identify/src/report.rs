@@ -2,7 +2,7 @@
 
 use mixer_compiler::diagnostic::wrapped;
 
-use super::fact::{Fact, Told, of_identified, of_predicted};
+use super::fact::{Detail, Fact, of_identified, of_predicted};
 use super::fit::Fit;
 use super::fit::cross::Candidate;
 use super::fit::pair::Pair;
@@ -21,7 +21,7 @@ const WIDTH: usize = 100;
 /// What serves to judge a map, in at most [`MOST_LINES`] lines.
 pub fn verdict(identified: &Identified) -> String {
     let facts = of_identified(identified);
-    let mut lines = facts_in_lines(facts.iter().filter(|fact| fact.told != Told::Detail));
+    let mut lines = facts_in_lines(facts.iter().filter(|fact| fact.told != Detail::Long));
     warnings(&mut lines, &doubts(identified), MOST_LINES);
     lines.join("\n")
 }

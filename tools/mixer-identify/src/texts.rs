@@ -7,8 +7,8 @@ use super::bench::read;
 use super::bench::{self, Bench};
 use super::identified::{Identified, Settings, with_runs};
 use super::refusal::Refusal;
-use super::rotor::predict::{self, Predicted, Wishes};
-use super::rotor::single::{Known, Single};
+use super::rotor::predict::{self, PredictOptions, Predicted};
+use super::rotor::single::{RunFacts, Single};
 use super::{fragment, report};
 
 /// A bench file.
@@ -101,9 +101,9 @@ pub struct Prediction {
     /// How rows of the pair are read.
     pub map: Settings,
     /// What is known of the runs beside their files.
-    pub known: Known,
+    pub known: RunFacts,
     /// What is wished of the pair.
-    pub wishes: Wishes,
+    pub wishes: PredictOptions,
 }
 
 /// Predicts a pair from a run of the upper rotor and, where it differs, of the lower one; rows of the

@@ -7,8 +7,8 @@ use std::path::Path;
 use mixer_identify::bench::{Point, Preparation};
 use mixer_identify::identified::Settings;
 use mixer_identify::plan::CORRECTING;
-use mixer_identify::rotor::predict::Wishes;
-use mixer_identify::rotor::single::Known;
+use mixer_identify::rotor::predict::PredictOptions;
+use mixer_identify::rotor::single::RunFacts;
 use mixer_identify::texts::{Prediction, Text, predict, read};
 
 type Propeller = (&'static [&'static str], &'static [(&'static str, f64)]);
@@ -147,15 +147,15 @@ fn outcome(run: &Text, rows: Text, spacing_ratio: f64) -> usize {
         run: own(),
         map: Settings {
             preparation: Preparation {
-                torque_may_lack: true,
+                is_correction: true,
                 ..Preparation::default()
             },
             ..Settings::default()
         },
-        known: Known::default(),
-        wishes: Wishes {
+        known: RunFacts::default(),
+        wishes: PredictOptions {
             spacing_ratio: Some(spacing_ratio),
-            ..Wishes::default()
+            ..PredictOptions::default()
         },
     };
     match predict(run, None, &[rows], &how) {
@@ -269,7 +269,7 @@ fn a_stand_with_one_signal_for_both_rotors_corrects_a_prediction() {
     let wide = table("throttle,thrust_n", |u, f| format!("{u},{}", 2.4 * f));
     let how = |both: bool| {
         let preparation = Preparation {
-            torque_may_lack: both,
+            is_correction: both,
             ..own().preparation
         };
         Prediction {
@@ -320,9 +320,9 @@ fn a_stand_with_one_signal_for_both_rotors_corrects_a_prediction() {
 #[test]
 fn an_impossible_rotor_is_refused_and_a_bad_curve_widens_the_band() {
     let of = |run: &Text, diameter: f64| {
-        let known = Known {
+        let known = RunFacts {
             diameter_m: Some(diameter),
-            ..Known::default()
+            ..RunFacts::default()
         };
         let how = Prediction {
             run: own(),

@@ -51,7 +51,7 @@ fn bench(name: &str, text: &str, options: &[String]) -> Kind {
     };
     let [pair, run] = ["identify", "predict"].map(|command| make::settings(command, options));
     let mut without_torque = pair.clone();
-    without_torque.preparation.torque_may_lack = true;
+    without_torque.preparation.is_correction = true;
     let mut best = Kind {
         kind: "map",
         points: 0,

@@ -100,7 +100,7 @@ impl ClosedForm<'_> {
             }
             if speed < 0.0 {
                 ahead.index = ahead.index.wrapping_sub(1);
-                ahead.step = usize::MAX;
+                ahead.step = usize::MAX; // -1, added with wrapping
             }
             ahead.look();
         }

@@ -21,8 +21,8 @@ use crate::{clamp, divisor, rolled};
 const CROSSINGS: u32 = 3;
 
 /// Gain of yaw, in units of `yaw_rounding_nm`, from which thrust is given up in full for the reserve:
-/// 1 % of the authority. For a smaller gain thrusts move a part of the way, so that they do not jump
-/// where it vanishes. That costs at most a quarter of this gain.
+/// 1 % of the authority. Below it the change of thrust is scaled linearly to 0, for continuity. That
+/// costs at most a quarter of this gain.
 const GAIN_BY_THRUST: f32 = 1000.0;
 
 /// Times that thrust is given up for the reserve: the second time from the thrust that the first one

@@ -9,7 +9,7 @@ use mixer_compiler::airframe::Basis;
 use mixer_identify::bench::Preparation;
 use mixer_identify::bench::read::refused_told;
 use mixer_identify::fit::basis::ThrottleBox;
-use mixer_identify::fit::wishes::Wishes;
+use mixer_identify::fit::wishes::FitOptions;
 use mixer_identify::identified::Settings;
 use mixer_identify::refusal::Refusal;
 use mixer_identify::texts::{Answer, Prediction, identify};
@@ -119,11 +119,11 @@ impl IdentifyArgs {
         let settings = self.reading.settings();
         Settings {
             preparation: Preparation {
-                torque_may_lack: self.prior.is_some(),
+                is_correction: self.prior.is_some(),
                 air: self.air.air(),
                 ..settings.preparation
             },
-            wishes: Wishes {
+            wishes: FitOptions {
                 basis: self.basis.0,
                 robust: self.robust,
                 throttle: self.throttle,

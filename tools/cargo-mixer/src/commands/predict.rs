@@ -4,14 +4,14 @@ use std::path::PathBuf;
 
 use clap::Args;
 use mixer_identify::bench::Preparation;
-use mixer_identify::bench::air::Known;
+use mixer_identify::bench::air::BenchAir;
 use mixer_identify::bench::header::ByHand;
 use mixer_identify::bench::read::Reading;
 use mixer_identify::bench::sign::SignChoice;
 use mixer_identify::fit::basis::ThrottleBox;
 use mixer_identify::identified::Settings;
 use mixer_identify::refusal::Refusal;
-use mixer_identify::rotor::predict::{Predicted, Wishes};
+use mixer_identify::rotor::predict::{PredictOptions, Predicted};
 use mixer_identify::rotor::single::{self, EXPONENT};
 use mixer_identify::texts::{self, Answer, Prediction, Text};
 
@@ -121,8 +121,8 @@ impl RotorArgs {
     }
 
     /// What is known of the runs, whose thrust and torque follow the voltage by `exponents`.
-    pub(crate) fn known(&self, reference_v: Option<f64>, exponents: [f64; 2]) -> single::Known {
-        single::Known {
+    pub(crate) fn known(&self, reference_v: Option<f64>, exponents: [f64; 2]) -> single::RunFacts {
+        single::RunFacts {
             kappa_m: self.kappa,
             diameter_m: self.diameter,
             run_v: self.run_voltage,
@@ -132,7 +132,7 @@ impl RotorArgs {
     }
 
     /// How a run of one rotor is read, without options for its columns.
-    pub(crate) fn reading(&self, air: Option<Known>, full_rpm: Option<f64>) -> Settings {
+    pub(crate) fn reading(&self, air: Option<BenchAir>, full_rpm: Option<f64>) -> Settings {
         Settings {
             reading: Reading {
                 by_hand: ByHand {
@@ -151,8 +151,13 @@ impl RotorArgs {
     }
 
     /// What is wished of the pair.
-    pub(crate) fn wishes(&self, throttle: Option<ThrottleBox>, closed_loop: bool, pack: &PackArgs) -> Wishes {
-        Wishes {
+    pub(crate) fn wishes(
+        &self,
+        throttle: Option<ThrottleBox>,
+        closed_loop: bool,
+        pack: &PackArgs,
+    ) -> PredictOptions {
+        PredictOptions {
             spacing_ratio: self.ratio(),
             closed_loop,
             throttle,

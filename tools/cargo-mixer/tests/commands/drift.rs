@@ -2,7 +2,7 @@
 
 use mixer_identify::bench::{Bench, Point};
 use mixer_identify::fit::pair::drift::Drift;
-use mixer_identify::fit::wishes::Wishes;
+use mixer_identify::fit::wishes::FitOptions;
 use mixer_identify::identified::{Identified, Settings, from_benches};
 
 use cargo_mixer::bench_files::read_one;
@@ -80,7 +80,8 @@ fn a_drift_is_told_in_a_drawn_order_and_nothing_in_that_of_a_grid() {
                 ["measured", "drawn"][usize::from(is_drawn)]
             );
             for (name, change) in DRIFTS {
-                let found = from_benches(vec![drifted(&bench, &order, change)], &Wishes::default()).unwrap();
+                let found =
+                    from_benches(vec![drifted(&bench, &order, change)], &FitOptions::default()).unwrap();
                 let both = ["thrust", "torque"].map(|of| shown(&found, of));
                 let t = both.map(|drift| drift.map_or("-".to_owned(), |drift| format!("{:.1}", drift.t)));
                 line += &format!(" {},", t.join(" "));

@@ -10,8 +10,8 @@ use mixer_identify::bench::Preparation;
 use mixer_identify::fit::polynomial::Polynomial;
 use mixer_identify::fragment;
 use mixer_identify::identified::Settings;
-use mixer_identify::rotor::predict::{Predicted, Wishes, correct};
-use mixer_identify::rotor::single::{EXPONENT, Known, Single};
+use mixer_identify::rotor::predict::{PredictOptions, Predicted, correct};
+use mixer_identify::rotor::single::{EXPONENT, RunFacts, Single};
 use mixer_rt::Wrench;
 
 use crate::{bench_data, folder, json, run, stdout};
@@ -123,10 +123,10 @@ fn predicted_airframes_lift_what_is_asked() {
     let mut all = Vec::new();
     for (run, map, spacing_ratio) in PAIRS {
         let bench = read_one(&file(run), &settings).expect("a run");
-        let single = Single::of(&bench, &Known::default(), &mut Vec::new()).expect("a rotor");
-        let wishes = Wishes {
+        let single = Single::of(&bench, &RunFacts::default(), &mut Vec::new()).expect("a rotor");
+        let wishes = PredictOptions {
             spacing_ratio: Some(spacing_ratio),
-            ..Wishes::default()
+            ..PredictOptions::default()
         };
         let predicted: Predicted =
             correct(single, None, &[], Air::default(), &wishes, Vec::new()).expect("a pair");

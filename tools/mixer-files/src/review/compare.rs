@@ -11,7 +11,7 @@ use crate::review::rotors;
 use crate::review::rows::{Row, Rows};
 use crate::review::saturated::Saturated;
 use crate::review::thrust::{Thrust, blocks, error, student};
-use crate::review::warnings::{Seen, warnings};
+use crate::review::warnings::{WarningInputs, warnings};
 
 /// Points of the map that are kept.
 const POINTS: usize = 400;
@@ -97,7 +97,7 @@ impl Review {
             warnings: Vec::new(),
             flown: flown(&rows, compiled),
         };
-        review.warnings = warnings(&Seen {
+        review.warnings = warnings(&WarningInputs {
             review: &review,
             flight,
             compiled,

@@ -20,7 +20,7 @@ const YAW_LEFT: f64 = 0.03;
 const OFTEN: f64 = 0.01;
 
 /// What the rules look at.
-pub(crate) struct Seen<'a> {
+pub(crate) struct WarningInputs<'a> {
     pub(crate) review: &'a Review,
     pub(crate) flight: &'a Flight,
     pub(crate) compiled: &'a Compiled,
@@ -30,12 +30,12 @@ pub(crate) struct Seen<'a> {
     pub(crate) has_velocity: bool,
 }
 
-type Rule = fn(&Seen<'_>) -> Vec<String>;
+type Rule = fn(&WarningInputs<'_>) -> Vec<String>;
 
 const RULES: [Rule; 8] = [damage, hover, scale, changes, rotors, centre, yaw, conditions];
 
 /// A sentence each.
-pub(crate) fn warnings(seen: &Seen<'_>) -> Vec<String> {
+pub(crate) fn warnings(seen: &WarningInputs<'_>) -> Vec<String> {
     RULES.iter().flat_map(|rule| rule(seen)).collect()
 }
 
@@ -43,13 +43,13 @@ fn when(holds: bool, sentence: impl FnOnce() -> String) -> Vec<String> {
     holds.then(sentence).into_iter().collect()
 }
 
-fn damage(seen: &Seen<'_>) -> Vec<String> {
+fn damage(seen: &WarningInputs<'_>) -> Vec<String> {
     let unknown = "no velocity is logged: the accelerometer's offset is in the scale's interval, 1 %";
     let velocity = when(!seen.has_velocity, || unknown.to_owned());
     seen.flight.damage.iter().cloned().chain(velocity).collect()
 }
 
-fn hover(seen: &Seen<'_>) -> Vec<String> {
+fn hover(seen: &WarningInputs<'_>) -> Vec<String> {
     let [_, air, hover] = seen.review.seconds;
     when(seen.is_short, || {
         format!(
@@ -58,7 +58,7 @@ fn hover(seen: &Seen<'_>) -> Vec<String> {
     })
 }
 
-fn scale(seen: &Seen<'_>) -> Vec<String> {
+fn scale(seen: &WarningInputs<'_>) -> Vec<String> {
     let airframe = &seen.compiled.airframe;
     let thrust = &seen.review.thrust;
     let [low, high] = thrust.interval;
@@ -82,7 +82,7 @@ fn scale(seen: &Seen<'_>) -> Vec<String> {
 }
 
 /// Take-offs that disagree, and flights within which the scale changes.
-fn changes(seen: &Seen<'_>) -> Vec<String> {
+fn changes(seen: &WarningInputs<'_>) -> Vec<String> {
     let thrust = &seen.review.thrust;
     let told = thrust
         .parts
@@ -104,7 +104,7 @@ fn changes(seen: &Seen<'_>) -> Vec<String> {
 }
 
 /// The centre of gravity, where its interval is beside the file's; not where a rotor is the cause.
-fn centre(seen: &Seen<'_>) -> Vec<String> {
+fn centre(seen: &WarningInputs<'_>) -> Vec<String> {
     let hover = &seen.review.hover;
     let is_off = |[low, high]: &[f64; 2]| *low > 0.0 || *high < 0.0;
     let beyond = hover
@@ -127,7 +127,7 @@ fn centre(seen: &Seen<'_>) -> Vec<String> {
     })
 }
 
-fn yaw(seen: &Seen<'_>) -> Vec<String> {
+fn yaw(seen: &WarningInputs<'_>) -> Vec<String> {
     let all_nm = seen.compiled.pair.scale()[1] * seen.compiled.airframe.units.len() as f64;
     let left_nm = seen.review.hover.yaw_nm.unwrap_or_default();
     when(left_nm.abs() > YAW_LEFT * all_nm, || {
@@ -139,7 +139,7 @@ fn yaw(seen: &Seen<'_>) -> Vec<String> {
 }
 
 /// Voltage and density beyond the mixer's range, or unknown.
-fn conditions(seen: &Seen<'_>) -> Vec<String> {
+fn conditions(seen: &WarningInputs<'_>) -> Vec<String> {
     let (airframe, review) = (&seen.compiled.airframe, seen.review);
     let of = |name: &str, measured: &Option<Range>, law: &Option<Correction>| match (measured, law) {
         (Some(measured), Some(law)) if measured.outside > 0.0 => Some(format!(
@@ -160,7 +160,7 @@ fn conditions(seen: &Seen<'_>) -> Vec<String> {
 }
 
 /// Rotors that stop or differ from their fellows, and axes that are cut.
-fn rotors(seen: &Seen<'_>) -> Vec<String> {
+fn rotors(seen: &WarningInputs<'_>) -> Vec<String> {
     let review = seen.review;
     let stops = review.stopped.iter();
     let stops: Vec<String> = stops

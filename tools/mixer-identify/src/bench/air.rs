@@ -11,20 +11,20 @@ pub(crate) const DENSITIES: [f64; 2] = [0.5, 1.65];
 
 /// A density, and where it comes from.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Known {
+pub struct BenchAir {
     /// kg/m3.
     pub density_kg_m3: f64,
     /// As `20 C and 1013 hPa`.
     pub from: String,
 }
 
-impl Known {
+impl BenchAir {
     /// That of a temperature, degrees Celsius, and a pressure at the place, hPa.
     ///
     /// # Errors
     /// Values that no bench has, with the unit that they may be in.
-    pub fn of_weather(temperature_c: f64, pressure_hpa: f64) -> Result<Known, String> {
-        Ok(Known {
+    pub fn of_weather(temperature_c: f64, pressure_hpa: f64) -> Result<BenchAir, String> {
+        Ok(BenchAir {
             density_kg_m3: density(
                 100.0 * pressure(pressure_hpa)?,
                 temperature(temperature_c)? + 273.15,
@@ -97,7 +97,7 @@ mod tests {
 
     #[test]
     fn weather_in_other_units_is_told() {
-        let known = Known::of_weather(20.0, 1013.25).expect("a density");
+        let known = BenchAir::of_weather(20.0, 1013.25).expect("a density");
         assert!((known.density_kg_m3 - 1.2041).abs() < 1e-4, "{known:?}");
         assert_eq!(known.from, "20 C and 1013.25 hPa");
         for (told, wanted) in [

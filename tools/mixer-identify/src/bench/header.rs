@@ -1,6 +1,6 @@
 //! Which column holds what: from the header line, or by hand.
 //!
-//! A name is normalised first ([`units::spelled`]); its unit is the last group in brackets, or a
+//! A name is normalised first ([`units::normalised`]); its unit is the last group in brackets, or a
 //! suffix of the plain format (`thrust_n`). Then a column is known by a word of its name (`ESC` or
 //! `PWM`, `thrust`, `torque`, `voltage`) and its rotor by another (`Left`, `A`, `upper`, or a
 //! prefix such as `Powertrain 1 - `, which users edit, so that the first prefix to appear is the
@@ -293,7 +293,7 @@ impl Columns {
             let aside = !matches!(quantity, Throttle | Thrust | Torque | Voltage) || role == "lower_voltage";
             let slot = self.slot(quantity, side);
             if let Some(first) = slot {
-                // Two columns for one role: guessing would be silent. Told of the first two.
+                // Two columns for one role: guessing would be silent. Detail of the first two.
                 let (first, raw) = (&first.name, &name.raw);
                 let both = format!("both look like the {role}");
                 if !aside && !lacks.iter().any(|(what, _)| what.ends_with(&both)) {
@@ -358,7 +358,7 @@ const NEWDEXTERITY: &str = "coaxial map (newdexterity)";
 
 fn format_name(headers: &[String], names: &[Name]) -> String {
     let has = |text: &str| names.iter().any(|n| n.text == text);
-    let any = |text: &str| headers.iter().any(|h| units::spelled(h).contains(text));
+    let any = |text: &str| headers.iter().any(|h| units::normalised(h).contains(text));
     if has("pwm left") && has("pwm right") {
         NEWDEXTERITY
     } else if any("torque mz") || any("force fz") {
@@ -380,9 +380,9 @@ fn position(headers: &[String], wanted: &str) -> Option<usize> {
         return number.checked_sub(1).filter(|&i| i < headers.len());
     }
     let exact = headers.iter().position(|h| h.trim() == wanted.trim());
-    let spelled = units::spelled(wanted);
+    let spelled = units::normalised(wanted);
     exact
-        .or_else(|| headers.iter().position(|h| units::spelled(h) == spelled))
+        .or_else(|| headers.iter().position(|h| units::normalised(h) == spelled))
         .or_else(|| headers.iter().position(|h| Name::new(h).text == spelled))
 }
 

@@ -114,7 +114,7 @@ pub struct Log {
     /// Rows that could not be read.
     pub refused: Vec<RefusedRow>,
     /// The air in the mean of the rows, where columns tell it.
-    pub air: Option<air::Known>,
+    pub air: Option<air::BenchAir>,
     /// What was passed over or taken for something else.
     pub notes: Vec<String>,
 }
@@ -221,7 +221,7 @@ pub fn read(name: &str, bytes: &[u8], reading: &Reading) -> Result<Log, Refusal>
         notes.push(format!("{name}:{line} is passed over: {what}{more}"));
     }
     densities.retain(|density| density.is_finite());
-    let air = (!densities.is_empty()).then(|| air::Known {
+    let air = (!densities.is_empty()).then(|| air::BenchAir {
         density_kg_m3: densities.iter().sum::<f64>() / densities.len() as f64,
         from: format!("columns of {name}"),
     });

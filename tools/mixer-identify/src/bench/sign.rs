@@ -154,7 +154,7 @@ pub fn pair(
     columns: &Columns,
     samples: &[Sample],
     policy: &SignPolicy,
-    torque_may_lack: bool,
+    is_correction: bool,
     notes: &mut Vec<String>,
 ) -> Result<(Signs, Vec<(f64, f64)>), Refusal> {
     let channel = |name, of: fn(&Sample) -> Split<f64>, columns: &Split<Option<Column>>| Channel {
@@ -176,7 +176,7 @@ pub fn pair(
         (Split { whole, .. }, true) => whole.is_finite(),
         (Split { rotors, .. }, false) => rotors.iter().all(|q| q.is_finite()),
     });
-    let (torque_signs, torques) = match torque_may_lack && !has_torque {
+    let (torque_signs, torques) = match is_correction && !has_torque {
         true => (Vec::new(), vec![f64::NAN; samples.len()]),
         false => pair_torque(file, columns, &torque, policy.torque, notes)?,
     };

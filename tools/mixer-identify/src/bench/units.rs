@@ -60,7 +60,7 @@ impl Scale {
 }
 
 /// Spells a name or a unit one way: micro and dot signs, blanks and case.
-pub fn spelled(text: &str) -> String {
+pub fn normalised(text: &str) -> String {
     let folded: String = text
         .chars()
         .map(|c| match c {
@@ -150,7 +150,7 @@ const UNITS: [(Quantity, &str, Scale); 40] = [
 pub fn scale(quantity: Quantity, unit: &str) -> Option<Scale> {
     let bare = |unit: &str| -> String {
         let is_mark = |c: &char| matches!(c, '·' | '*' | '-' | '.' | ' ' | '°' | 'º');
-        spelled(unit).chars().filter(|c| !is_mark(c)).collect()
+        normalised(unit).chars().filter(|c| !is_mark(c)).collect()
     };
     let unit = bare(unit);
     let mut units = UNITS.iter().filter(|(of, ..)| *of == quantity);

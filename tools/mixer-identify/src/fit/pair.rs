@@ -14,7 +14,7 @@ use crate::fit::fold::{self, Fold};
 use crate::fit::robust::{self, Outlier};
 use crate::fit::uncertainty::Uncertainty;
 use crate::fit::voltage::Voltage;
-use crate::fit::wishes::Wishes;
+use crate::fit::wishes::FitOptions;
 use crate::fit::{Deficient, Design, Fit, fit, range};
 use crate::refusal::Refusal;
 use crate::rotor::Alone;
@@ -70,7 +70,7 @@ pub struct Pair {
 }
 
 /// Identifies the pair that the benches of [`Kind::Pair`] describe.
-pub fn identify(benches: &[Bench], voltage: Option<&Voltage>, wishes: &Wishes) -> Result<Pair, Refusal> {
+pub fn identify(benches: &[Bench], voltage: Option<&Voltage>, wishes: &FitOptions) -> Result<Pair, Refusal> {
     let benches: Vec<&Bench> = benches.iter().filter(|b| b.kind == Kind::Pair).collect();
     let files = names(&benches);
     let mut warnings = Vec::new();
@@ -171,7 +171,7 @@ fn to_command(
 fn choose(
     points: &[Placed],
     throttle_box: ThrottleBox,
-    wishes: &Wishes,
+    wishes: &FitOptions,
 ) -> Result<(Vec<Candidate>, Vec<Outlier>), Deficient> {
     let suspects = suspects(wishes.basis.unwrap_or(robust::JUDGING), points, throttle_box);
     let clean = without(points, &suspects);

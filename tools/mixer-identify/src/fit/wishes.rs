@@ -6,7 +6,7 @@ use crate::fit::basis::ThrottleBox;
 
 /// What the user decides about the fit.
 #[derive(Debug, Clone, Default)]
-pub struct Wishes {
+pub struct FitOptions {
     /// The basis, or nothing to choose by cross-validation.
     pub basis: Option<Basis>,
     /// Leave out the rows that stand out.

@@ -56,7 +56,7 @@ const CORRECTING_ROWS: usize = 4;
 
 /// What the user decides.
 #[derive(Debug, Clone, Default)]
-pub struct Wishes {
+pub struct PredictOptions {
     /// z/D.
     pub spacing_ratio: Option<f64>,
     /// Whether a throttle commands a speed that the controller holds.
@@ -141,7 +141,7 @@ pub fn correct(
     lower: Option<Single>,
     maps: &[Bench],
     air: Air,
-    wishes: &Wishes,
+    wishes: &PredictOptions,
     mut warnings: Vec<String>,
 ) -> Result<Predicted, Refusal> {
     let runs: Vec<Single> = [Some(upper), lower].into_iter().flatten().collect();
@@ -193,7 +193,7 @@ pub fn correct(
 }
 
 /// What speaks against the model, for these runs.
-fn remarks(runs: &[Single], wishes: &Wishes, throttle: ThrottleBox, warnings: &mut Vec<String>) {
+fn remarks(runs: &[Single], wishes: &PredictOptions, throttle: ThrottleBox, warnings: &mut Vec<String>) {
     let [least, most] = KNOWN_SPACINGS;
     if let Some(ratio) = wishes.spacing_ratio
         && !(least..=most).contains(&ratio)

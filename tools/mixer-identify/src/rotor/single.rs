@@ -28,7 +28,7 @@ pub const EXPONENT: f64 = 1.75;
 
 /// What the user knows of a run beside its file.
 #[derive(Debug, Clone, Copy)]
-pub struct Known {
+pub struct RunFacts {
     /// Torque per thrust, m, for a run without torque.
     pub kappa_m: Option<f64>,
     /// Diameter of the propeller, m.
@@ -41,9 +41,9 @@ pub struct Known {
     pub exponents: [f64; 2],
 }
 
-impl Default for Known {
+impl Default for RunFacts {
     fn default() -> Self {
-        Known {
+        RunFacts {
             kappa_m: None,
             diameter_m: None,
             run_v: None,
@@ -82,7 +82,7 @@ impl Single {
     ///
     /// # Errors
     /// A file that is no run of one rotor, or too little of one.
-    pub fn of(bench: &Bench, known: &Known, warnings: &mut Vec<String>) -> Result<Single, Refusal> {
+    pub fn of(bench: &Bench, known: &RunFacts, warnings: &mut Vec<String>) -> Result<Single, Refusal> {
         let file = &bench.file;
         if bench.kind == Kind::Pair {
             return Err(Refusal::of(
@@ -276,7 +276,7 @@ fn two_curves(places: &[[f64; 2]], greatest: f64) -> String {
 }
 
 /// What stands for a torque that was not measured: torque per thrust, m, and why.
-fn stand_in(file: &str, known: &Known) -> Result<(f64, String), Refusal> {
+fn stand_in(file: &str, known: &RunFacts) -> Result<(f64, String), Refusal> {
     match (known.kappa_m, known.diameter_m) {
         (Some(kappa), _) => Ok((kappa, "as --kappa says".into())),
         (None, Some(diameter)) => Ok((
@@ -305,7 +305,7 @@ pub(crate) fn exponents_told([thrust, torque]: [f64; 2]) -> String {
 /// known.
 fn at_one_voltage(
     bench: &Bench,
-    known: &Known,
+    known: &RunFacts,
     warnings: &mut Vec<String>,
 ) -> Result<(Vec<Point>, Option<f64>), Refusal> {
     let mean = mean_voltage(&bench.points).map(|(mean, _)| mean);
@@ -341,7 +341,7 @@ mod tests {
 
     /// 20 u2 + 2 u N and a torque of 0.02 m of it at 22.2 V, measured at a supply that sags by `sag`
     /// of it at full throttle.
-    fn run(sag: f64, known: &Known) -> Single {
+    fn run(sag: f64, known: &RunFacts) -> Single {
         let mut csv = String::from("throttle,thrust_n,torque_nm,voltage_v\n");
         for u in (2..=10).map(|k| 0.1 * f64::from(k)) {
             let volts = 22.2 * (1.0 - sag * u * u);
@@ -355,9 +355,9 @@ mod tests {
 
     #[test]
     fn a_supply_that_sags_gives_the_curves_of_one_that_holds() {
-        let known = Known {
+        let known = RunFacts {
             reference_v: Some(22.2),
-            ..Known::default()
+            ..RunFacts::default()
         };
         for sag in [0.0, 0.06, 0.1] {
             let Rotor { thrust, torque } = run(sag, &known).rotor;
@@ -365,7 +365,7 @@ mod tests {
             assert!((torque.at(0.95) / 0.399 - 1.0).abs() < 1e-6, "{sag}: {torque:?}");
         }
         // Without a reference at the mean voltage.
-        let own = run(0.1, &Known::default());
+        let own = run(0.1, &RunFacts::default());
         let volts = own.voltage_v.expect("a voltage");
         let wanted = 19.95 * libm::pow(volts / 22.2, EXPONENT);
         assert!((own.rotor.thrust.at(0.95) / wanted - 1.0).abs() < 1e-6, "{volts}");

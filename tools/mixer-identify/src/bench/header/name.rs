@@ -5,9 +5,9 @@ use crate::bench::units::{self, Quantity};
 /// A header name taken apart.
 pub(super) struct Name {
     pub(super) raw: String,
-    /// Text before " - ", spelled.
+    /// Text before " - ", normalised.
     prefix: Option<String>,
-    /// The rest without its unit, spelled.
+    /// The rest without its unit, normalised.
     pub(super) text: String,
     pub(super) unit: Option<String>,
 }
@@ -50,7 +50,7 @@ fn side_of(words: [&str; 2], word: &str) -> Option<usize> {
 impl Name {
     pub(super) fn new(raw: &str) -> Self {
         let raw = raw.trim().to_string();
-        let spelled = units::spelled(&raw);
+        let spelled = units::normalised(&raw);
         let (prefix, rest) = match spelled.rsplit_once(" - ") {
             Some((prefix, rest)) => (Some(prefix.to_string()), rest.to_string()),
             None => (None, spelled),

@@ -6,7 +6,7 @@ use crate::bench::{Bench, Point, mean_voltage};
 use crate::fit::basis::ThrottleBox;
 use crate::fit::robust::{self, Outlier};
 use crate::fit::voltage::Voltage;
-use crate::fit::wishes::Wishes;
+use crate::fit::wishes::FitOptions;
 use crate::fit::{Design, hundredths};
 use crate::refusal::Refusal;
 use crate::statistics::{extent, greatest};
@@ -37,7 +37,7 @@ pub(super) fn channels(points: &[Placed]) -> [Vec<f64>; 2] {
 pub(super) fn at_reference<'a>(
     benches: &[&'a Bench],
     voltage: Option<&Voltage>,
-    wishes: &Wishes,
+    wishes: &FitOptions,
 ) -> Result<(Vec<Placed<'a>>, Option<f64>), Refusal> {
     let sound = voltage.and_then(Voltage::exponents);
     let volts = |b: &Bench| mean_voltage(&b.points).and_then(|(mean, all)| all.then_some(mean));
