@@ -17,8 +17,7 @@ const NOISE: f64 = 0.005;
 /// Fewest rows that show by their agreement that a rotor without a speed is at rest.
 const SEVERAL: usize = 2;
 
-/// The load cells: name, unit, quantity (thrust, torque) and the cell of a row. A whole stands before its
-/// parts.
+/// The load cells: name, unit, quantity (thrust, torque) and the cell of a row.
 type Cell = fn(&mut Sample) -> &mut f64;
 const CELLS: [(&str, &str, usize, Cell); 6] = [
     ("thrust", "N", 0, |s| &mut s.thrust.whole),
@@ -62,63 +61,48 @@ pub(super) fn examine(
     let mut rests = at_rest(samples, commanded_off);
     rests.retain(|rows| !scatters(rows));
     let mut tare = Tare::default();
-    let mut whole_told = [false; 2];
+    let rows = rests.concat();
+    let (Some(first), Some(last)) = (rows.first(), rows.last()) else {
+        if takes_off {
+            tare.warnings.push(
+                "--tare: no rows at rest, nothing is taken off; a stop is at rest where its speeds are 0, or where several rows at \
+                 throttle 0 agree"
+                    .into(),
+            );
+        }
+        return tare;
+    };
+    let lines = [first, last].map(|&k| samples[k].line);
     for ((name, unit, quantity, cell), column) in CELLS.into_iter().zip(&columns) {
-        let offsets: Vec<f64> = rests.iter().map(|rows| mean(column, rows)).collect();
-        let [low, high] = extent(offsets.iter().copied());
+        let [low, high] = extent(rests.iter().map(|rows| mean(column, rows)));
         let share = |x: f64| x / greatest[quantity];
-        let most = share(low.abs().max(high.abs()));
-        if !offsets.iter().all(|x| x.is_finite()) || offsets.is_empty() || most <= NOISE {
+        let (offset, most) = (mean(column, &rows), share(low.abs().max(high.abs())));
+        if !offset.is_finite() || most <= NOISE {
             continue;
         }
-        let offset = mean(column, &rests.concat());
+        let drifts = share(high - low) > NOISE;
+        let reads = match drifts {
+            true => format!("varies between {low:+.4} and {high:+.4} {unit}"),
+            false => format!("is {offset:+.4} {unit}"),
+        };
+        let told = format!(
+            "the {name} at rest (lines {} to {}) {reads}, up to {:.1} % of the greatest",
+            lines[0],
+            lines[1],
+            100.0 * most
+        );
         if takes_off {
             samples.iter_mut().for_each(|s| *cell(s) -= offset);
-        }
-        if whole_told[quantity] {
-            continue;
-        }
-        whole_told[quantity] = name == ["thrust", "torque"][quantity];
-        let percent = 100.0 * most;
-        let lines = |rows: &[usize]| {
-            let [first, last] = [rows[0], rows[rows.len() - 1]].map(|k| samples[k].line);
-            if first == last {
-                format!("line {first}")
-            } else {
-                format!("lines {first} to {last}")
-            }
-        };
-        let reads: Vec<String> = offsets
-            .iter()
-            .zip(&rests)
-            .map(|(offset, rows)| format!("{offset:+.4} {unit} ({})", lines(rows)))
-            .collect();
-        let reads = format!(
-            "at rest the {name} reads {}, up to {percent:.1} % of the greatest",
-            reads.join(", ")
-        );
-        let differ = share(high - low) > NOISE;
-        match takes_off {
-            true => tare.taken_off.push(format!(
-                "{reads}: {offset:+.4} {unit}, the mean, is taken off all rows"
-            )),
-            false if !differ => tare
-                .warnings
-                .push(format!("{reads}: --tare takes it off all rows")),
-            false => {}
-        }
-        if differ {
-            tare.warnings.push(format!(
-                "{reads}: the load cell drifts during the run; --tare takes off the mean of the rows at rest, no drift"
+            tare.taken_off.push(format!(
+                "{told}: the mean, {offset:+.4} {unit}, is taken off all rows"
             ));
         }
-    }
-    if takes_off && rests.is_empty() {
-        tare.warnings.push(
-            "--tare: no rows at rest, nothing is taken off; a stop is at rest where its speeds are 0, or where several rows at \
-             throttle 0 agree"
-                .into(),
-        );
+        if drifts || !takes_off {
+            tare.warnings.push(format!(
+                "{told}: --tare takes {} off all rows",
+                if drifts { "the mean" } else { "it" }
+            ));
+        }
     }
     tare
 }
@@ -180,17 +164,17 @@ mod tests {
                 &[(0.0, -0.5, X), (0.0, -0.5, X)],
                 &[],
                 -0.5,
-                "reads -0.5000 N (lines 2 to 3), up to 5.0 % of the greatest: --tare",
+                "(lines 2 to 3) is -0.5000 N, up to 5.0 % of the greatest: --tare",
             ),
             (&[(0.0, 0.01, X), (0.0, 0.01, X)], &[], 0.0, ""),
             // One row may be of rotors that run out, unless its speed is 0.
             (&[(0.0, -0.5, X)], &[], 0.0, ""),
-            (&[(0.0, -0.5, 0.0)], &[], -0.5, "reads -0.5000 N (line 2)"),
+            (&[(0.0, -0.5, 0.0)], &[], -0.5, "(lines 2 to 2) is -0.5000 N"),
             (
                 &[(0.0, 0.8, 540.0), (0.0, 0.5, 0.0)],
                 &[],
                 0.5,
-                "reads +0.5000 N (line 3)",
+                "(lines 3 to 3) is +0.5000 N",
             ),
             (&[], &[(0.0, 0.9, 1100.0), (0.0, 0.9, 1100.0)], 0.0, ""),
             // A stand that rings at a speed of 0.
@@ -199,7 +183,7 @@ mod tests {
                 &[(0.0, 0.0, 0.0)],
                 &[(0.0, -0.6, 0.0)],
                 -0.3,
-                "reads +0.0000 N (line 2), -0.6000 N (line 5), up to 6.0 % of the greatest: the load cell drifts",
+                "(lines 2 to 5) varies between -0.6000 and +0.0000 N, up to 6.0 % of the greatest: --tare takes off the mean",
             ),
             // A column of speeds that was not recorded.
             (&[(0.0, 0.5, X)], &[(0.0, 0.5, X)], 0.0, ""),
