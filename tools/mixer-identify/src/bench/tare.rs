@@ -183,7 +183,7 @@ mod tests {
                 &[(0.0, 0.0, 0.0)],
                 &[(0.0, -0.6, 0.0)],
                 -0.3,
-                "(lines 2 to 5) varies between -0.6000 and +0.0000 N, up to 6.0 % of the greatest: --tare takes off the mean",
+                "(lines 2 to 5) varies between -0.6000 and +0.0000 N, up to 6.0 % of the greatest: --tare takes the mean off",
             ),
             // A column of speeds that was not recorded.
             (&[(0.0, 0.5, X)], &[(0.0, 0.5, X)], 0.0, ""),
