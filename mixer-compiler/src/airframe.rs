@@ -22,7 +22,7 @@ use toml::de::DeTable;
 pub use self::allocation::{Airmode, Allocation, Axis};
 pub use self::basis::Basis;
 pub(crate) use self::basis::{POWERS, value_of_terms};
-pub use self::correction::{Correction, Law};
+pub use self::correction::{Correction, Law, TYPICAL_EXPONENT};
 pub use self::inverse::{Inverse, Method};
 pub use self::name::of_file as name_of_file;
 pub use self::pair::{Pair, Spin};

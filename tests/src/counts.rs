@@ -126,8 +126,8 @@ pub fn document(compiler: &str, rows: &[Row]) -> String {
          * worst found: the most that any request took, of these and of a search\n\n\
          The search runs on the target, in the image that counts: populations of requests are mutated (axes, signs, voltage, \
          which rotors are out) and the more expensive survive, for {} billion instructions a row. It starts from the two sets and from \
-         what was found before. `tests/worst.csv` holds what it found, and the tests count these requests anew. A worst found \
-         is no bound: `cargo mixer check` states one.\n\n\
+         what was found before. `tests/worst.csv` holds what it found, and the tests count these requests anew. \"Worst \
+         found\" is the largest count seen. For a guaranteed bound see `cargo mixer check`.\n\n\
          Mixers: `coaxial` is this one, `c-interface` is its library for C with a caller who copies the throttles, `one-rotor-out` and `two-rotors-out` are its `mix_with_health` with random rotors out (\"attainable\" is with all \
          rotors); `conventional` (the paper's), `sequential` (after PX4) and `wls` (the crate `wls-alloc`) take rotors as isolated. Airframes are files of `airframes/`, \
          `y6-*` with the pairs of the `x8-*`, and frames of `tests/src/frames/counted.rs`.\n\n\

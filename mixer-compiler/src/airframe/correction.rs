@@ -11,6 +11,10 @@ use crate::spec::{Fields, Point, Spanned};
 /// How far k may be from 1 at the reference: points are written to three or four digits.
 const REFERENCE_TOLERANCE: f64 = 1e-3;
 
+/// Power of the voltage that thrust follows where nothing else is known: the median of 104 motors that
+/// were measured at two voltages.
+pub const TYPICAL_EXPONENT: f64 = 1.75;
+
 /// Steepest power of the voltage that is taken for a law. Thrust follows about V^1.75; V^3 would be
 /// power.
 const LARGEST_OF_VOLTAGE: f64 = 4.0;

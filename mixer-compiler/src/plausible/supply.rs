@@ -1,14 +1,12 @@
 //! Rules on `[voltage]` and `[air]`.
 
 use super::rule::{Facts, Rule};
+use crate::airframe::TYPICAL_EXPONENT;
 use crate::airframe::{Correction, Law};
 use crate::diagnostic::{Code, number, rounded};
 
 /// What a pack of lithium cells loses of its voltage from full to empty, as a share.
 const PACK_FALLS: f64 = 0.2;
-
-/// Exponent of thrust over voltage: the median of benches.
-const TYPICAL: f64 = 1.75;
 
 /// Highest voltage of one cell, V.
 const ONE_CELL_V: f64 = 4.5;
@@ -24,7 +22,7 @@ const FACTORS: [f64; 2] = [0.35, 2.0];
 /// known; without `[vehicle]` it may be a pair on a stand.
 pub(super) fn voltage(facts: &Facts<'_>) -> Vec<Rule> {
     let Some(voltage) = &facts.airframe.voltage else {
-        let lost = 100.0 * (1.0 - libm::pow(1.0 - PACK_FALLS, TYPICAL));
+        let lost = 100.0 * (1.0 - libm::pow(1.0 - PACK_FALLS, TYPICAL_EXPONENT));
         return vec![
             Rule::holds(Code::NoVoltage, "vehicle.mass_kg", facts.airframe.vehicle.is_none()).says(
                 format!(

@@ -6,11 +6,11 @@
 //! k. A speed that the controller holds gives 1. Electrical power is V I, so that it follows s^2 less
 //! than at the voltage s V.
 
+use mixer_compiler::airframe::TYPICAL_EXPONENT;
 use serde::Serialize;
 
 use crate::bench::Bench;
 use crate::bench::air::BenchAir;
-use crate::rotor::single::EXPONENT;
 use crate::statistics::extent;
 
 /// Densities in flight, kg/m3, where nothing else is known, and what they are.
@@ -18,7 +18,7 @@ const IN_FLIGHT: [f64; 2] = [0.75, 1.4];
 const OF_FLIGHT: &str = "in flight: 3,000 m at 40 C to sea level at -20 C";
 
 /// Exponent of the density where that of the voltage is the usual one.
-pub const DENSITY_EXPONENT: f64 = EXPONENT - 1.0;
+pub const DENSITY_EXPONENT: f64 = TYPICAL_EXPONENT - 1.0;
 
 /// The air of an identification.
 #[derive(Debug, Clone, Serialize)]

@@ -1,5 +1,6 @@
 //! The tables of an airframe file as TOML, with what there is to say of each in comments.
 
+use mixer_compiler::airframe::TYPICAL_EXPONENT;
 use std::fmt::Write as _;
 use std::iter::{once, repeat};
 
@@ -11,7 +12,6 @@ use super::fit::power::Power;
 use super::fit::{Fit, hundredths};
 use super::identified::Identified;
 use super::rotor::predict::Predicted;
-use super::rotor::single::EXPONENT;
 use super::table::{commented, numbers, table, texts};
 
 /// The key of the torque of least power. Which airframe it is decides whether that saves anything,
@@ -171,13 +171,13 @@ fn to_fill_in(reference: Option<f64>, range: Option<[f64; 2]>, exponents: [Optio
     let reference = reference.map_or("?".to_owned(), |volts| format!("{volts:?}"));
     let range = range.map_or("[?, ?]".to_owned(), |range| format!("{range:?}"));
     let [thrust, torque] = match exponents {
-        [None, None] => [EXPONENT.to_string(), EXPONENT.to_string()],
+        [None, None] => [TYPICAL_EXPONENT.to_string(), TYPICAL_EXPONENT.to_string()],
         known => known.map(|e| e.map_or("?".to_owned(), |e| format!("{e:?}"))),
     };
     let [reference, range] = [format!("reference_v = {reference}"), format!("range_v = {range}")];
     format!(
         "# No [voltage]: the mixer takes k = 1 at any voltage. To follow the battery, fill in what is open and uncomment;\n\
-         # {EXPONENT} is the median of 104 motors with propellers:\n\
+         # {TYPICAL_EXPONENT} is the median of 104 motors with propellers:\n\
          # [voltage]\n\
          # {reference:<34} # supply of the bench, under load\n\
          # {range:<34} # pack in flight, empty and full: 3.2 and 4.2 V a LiPo cell\n\

@@ -19,6 +19,7 @@
 //! the paper gives nothing to model them by: drag, ground effect, wake between units, the rotors'
 //! own angular momentum (it cancels in a contra-rotating pair).
 
+use mixer_compiler::airframe::TYPICAL_EXPONENT;
 use mixer_compiler::airframe::{Airframe, Correction};
 use mixer_compiler::atmosphere;
 use nalgebra::{Quaternion, SVector, Vector3};
@@ -29,9 +30,6 @@ use crate::motor::{Motor, NO_LOAD};
 use crate::pair::Pair;
 use crate::state::State;
 use crate::vehicle::{Body, GRAVITY_M_S2};
-
-/// Exponent of the voltage where the file has none.
-const USUAL_EXPONENT: f64 = 1.75;
 
 /// One unit as the plant sees it.
 #[derive(Clone, Debug)]
@@ -109,7 +107,7 @@ impl<const R: usize> Plant<R> {
     /// An exponent that is not a motor's.
     pub fn in_air(self, density_kg_m3: f64) -> Result<Self, String> {
         let voltage = self.voltage.as_ref();
-        let exponent = voltage.map_or(USUAL_EXPONENT, |voltage| voltage.exponents()[0]);
+        let exponent = voltage.map_or(TYPICAL_EXPONENT, |voltage| voltage.exponents()[0]);
         let reference_v = voltage.map(|voltage| voltage.reference);
         let sigma = density_kg_m3 / self.bench_kg_m3;
         let motor = Motor::new(exponent, NO_LOAD, reference_v, sigma).ok_or_else(|| {

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use mixer_compiler::airframe::TYPICAL_EXPONENT;
 use mixer_identify::bench::Preparation;
 use mixer_identify::bench::air::BenchAir;
 use mixer_identify::bench::header::ByHand;
@@ -12,7 +13,7 @@ use mixer_identify::fit::basis::ThrottleBox;
 use mixer_identify::identified::Settings;
 use mixer_identify::refusal::Refusal;
 use mixer_identify::rotor::predict::{PredictOptions, Predicted};
-use mixer_identify::rotor::single::{self, EXPONENT};
+use mixer_identify::rotor::single;
 use mixer_identify::texts::{self, Answer, Prediction, Text};
 
 use crate::Done;
@@ -215,7 +216,7 @@ impl PredictArgs {
 
 /// Exponents of the voltage: those given, else usual ones. A speed that is held does not follow it.
 pub(crate) fn exponents(given: Option<[f64; 2]>, held: bool) -> [f64; 2] {
-    given.unwrap_or([if held { 0.0 } else { EXPONENT }; 2])
+    given.unwrap_or([if held { 0.0 } else { TYPICAL_EXPONENT }; 2])
 }
 
 /// Runs the command: status 0, 1 for input that cannot serve, 2 for bad usage.

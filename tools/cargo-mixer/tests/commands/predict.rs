@@ -3,7 +3,7 @@
 use std::fs;
 
 use cargo_mixer::bench_files::{identify, read_one};
-use mixer_compiler::airframe::Basis;
+use mixer_compiler::airframe::{Basis, TYPICAL_EXPONENT};
 use mixer_compiler::{Source, compile};
 use mixer_identify::air::Air;
 use mixer_identify::bench::Preparation;
@@ -11,7 +11,7 @@ use mixer_identify::fit::polynomial::Polynomial;
 use mixer_identify::fragment;
 use mixer_identify::identified::Settings;
 use mixer_identify::rotor::predict::{PredictOptions, Predicted, correct};
-use mixer_identify::rotor::single::{EXPONENT, RunFacts, Single};
+use mixer_identify::rotor::single::{RunFacts, Single};
 use mixer_rt::Wrench;
 
 use crate::{bench_data, folder, json, run, stdout};
@@ -139,7 +139,7 @@ fn predicted_airframes_lift_what_is_asked() {
         let mut quartic = Settings::default();
         quartic.wishes.basis = Some(Basis::Quartic);
         // Rows of the map at the voltage of the prediction.
-        quartic.wishes.voltage_exponent = Some([EXPONENT; 2]);
+        quartic.wishes.voltage_exponent = Some([TYPICAL_EXPONENT; 2]);
         quartic.wishes.reference_v = predicted.reference_v;
         let measured = identify(&[file(map)], &quartic)
             .expect("a map")

@@ -1,5 +1,6 @@
 //! The airframe file.
 
+use mixer_compiler::airframe::TYPICAL_EXPONENT;
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -17,9 +18,6 @@ const COMMENT: usize = 110;
 
 /// Idle where nothing says one.
 const IDLE: f64 = 0.1;
-
-/// Median over many motors and propellers measured at two voltages.
-const EXPONENT: f64 = 1.75;
 
 /// Tables of a pair's file that an airframe takes over; `[throttle]` is made of both files. The others
 /// describe another vehicle.
@@ -126,7 +124,7 @@ fn voltage(imported: &mut Imported, pair: Option<&PairFile>) -> String {
     );
     format!(
         "# [voltage]                            # reference_v: of the bench; exponents: a median\n# reference_v = \n\
-         # range_v = {range:?}\n# thrust_exponent = {EXPONENT}\n# torque_exponent = {EXPONENT}\n\n"
+         # range_v = {range:?}\n# thrust_exponent = {TYPICAL_EXPONENT}\n# torque_exponent = {TYPICAL_EXPONENT}\n\n"
     )
 }
 

@@ -34,15 +34,15 @@ pub struct Outlier {
     pub file: String,
     /// Line in it, from 1.
     pub line: u64,
-    /// Throttles.
+    /// Throttle of the upper rotor.
     pub u: f64,
-    /// Throttles.
+    /// Throttle of the lower rotor.
     pub l: f64,
     /// Measured less the fit to the other rows, N.
     pub thrust_residual: f64,
     /// The same in standard deviations of a prediction there.
     pub thrust_deviations: f64,
-    /// Measured less robust fit, N m.
+    /// The same, N m.
     pub torque_residual: f64,
     /// The same in standard deviations of a prediction there.
     pub torque_deviations: f64,

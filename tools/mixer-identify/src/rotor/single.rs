@@ -1,5 +1,6 @@
 //! A run of one rotor, or the table of its data sheet, as thrust and torque over throttle.
 
+use mixer_compiler::airframe::TYPICAL_EXPONENT;
 use mixer_compiler::model::TORQUE_PER_THRUST_M;
 use serde::Serialize;
 
@@ -23,8 +24,6 @@ const MISFIT: [f64; 2] = [0.02, 0.06];
 const SAME: f64 = 0.002;
 /// Torque per thrust over diameter, where torque was not measured. Six runs of 11 to 22 inch.
 pub const KAPPA_PER_DIAMETER: f64 = 0.048;
-/// Exponent of voltage, the median of 104 motors with propellers.
-pub const EXPONENT: f64 = 1.75;
 
 /// What the user knows of a run beside its file.
 #[derive(Debug, Clone, Copy)]
@@ -48,7 +47,7 @@ impl Default for RunFacts {
             diameter_m: None,
             run_v: None,
             reference_v: None,
-            exponents: [EXPONENT; 2],
+            exponents: [TYPICAL_EXPONENT; 2],
         }
     }
 }
@@ -345,7 +344,7 @@ mod tests {
         let mut csv = String::from("throttle,thrust_n,torque_nm,voltage_v\n");
         for u in (2..=10).map(|k| 0.1 * f64::from(k)) {
             let volts = 22.2 * (1.0 - sag * u * u);
-            let thrust = (20.0 * u * u + 2.0 * u) * libm::pow(volts / 22.2, EXPONENT);
+            let thrust = (20.0 * u * u + 2.0 * u) * libm::pow(volts / 22.2, TYPICAL_EXPONENT);
             csv += &format!("{u},{thrust},{},{volts}\n", 0.02 * thrust);
         }
         let log = read::read("run.csv", csv.as_bytes(), &read::Reading::default()).expect("a log");
@@ -367,7 +366,7 @@ mod tests {
         // Without a reference at the mean voltage.
         let own = run(0.1, &RunFacts::default());
         let volts = own.voltage_v.expect("a voltage");
-        let wanted = 19.95 * libm::pow(volts / 22.2, EXPONENT);
+        let wanted = 19.95 * libm::pow(volts / 22.2, TYPICAL_EXPONENT);
         assert!((own.rotor.thrust.at(0.95) / wanted - 1.0).abs() < 1e-6, "{volts}");
         assert_eq!(own.range_v, Some([22.2 * 0.9, 22.2 * (1.0 - 0.1 * 0.2 * 0.2)]));
     }

@@ -1,5 +1,6 @@
 //! The exponent with the map profiled out.
 
+use mixer_compiler::airframe::TYPICAL_EXPONENT;
 use std::collections::{BTreeMap, BTreeSet};
 
 use faer::Mat;
@@ -69,7 +70,7 @@ pub(super) fn profile(rows: &[&Row], g: &Regressors, reference: f64) -> Option<E
     let weights: Vec<f64> = rows.iter().map(|r| weight(r)).collect();
     let ratio: Vec<f64> = rows.iter().map(|r| r.voltage / reference).collect();
     let y: Vec<f64> = rows.iter().zip(&weights).map(|(r, w)| w * r.y).collect();
-    let mut k = 1.75; // the field's median; the problem is nearly linear in k
+    let mut k = TYPICAL_EXPONENT; // the problem is nearly linear in k
     for _ in 0..50 {
         let factor = ratio.iter().zip(&weights).map(|(r, w)| w * libm::pow(*r, k));
         let factor: Vec<f64> = factor.collect();
