@@ -49,21 +49,6 @@ const THRUSTS_ROTOR_OUT: usize = 21;
 /// Every so many nodes of the error's grid are there for the pointer.
 const HOVER_STRIDE: usize = 2;
 
-/// Sections of the page in their order: anchor and title.
-pub const SECTIONS: [(&str, &str); 11] = [
-    ("layout", "Layout"),
-    ("bench-check", "Check list on the bench"),
-    ("level", "Throttle and power"),
-    ("authority", "Authority"),
-    ("comparison", "Yaw at constant thrust"),
-    ("attainable", "Attainable set"),
-    ("forward", "Forward maps"),
-    ("inverse", "Inverse maps"),
-    ("error", "Error of the inverse"),
-    ("cost", "Cost on the target"),
-    ("matrices", "Allocation"),
-];
-
 /// The report without the page around it.
 #[derive(Clone, Debug)]
 pub struct Content {
@@ -96,27 +81,28 @@ pub fn content(study: &Study<'_>, bench: Option<&BenchPoints>, digest: Option<&s
     let airframe = &compiled.airframe;
     let errors = Effort::BOTH.map(|effort| maps::error_field(study, effort));
     let facts = mixer_facts::facts(compiled);
-    let section = |anchor| match anchor {
-        "layout" => layout_section(study),
-        "bench-check" => bench_check(study),
-        "level" => level_section(study),
-        "comparison" => comparison_section(study),
-        "authority" => authority_section(study),
-        "attainable" => attainable_section(study),
-        "forward" => forward_section(study, bench),
-        "inverse" => inverse_section(study),
-        "error" => error_section(study, &errors),
-        "cost" => cost_section(study, &facts),
-        _ => table::matrices(study, &facts),
-    };
+    // Anchor, title, content.
+    let sections = [
+        ("layout", "Layout", layout_section(study)),
+        ("bench-check", "Check list on the bench", bench_check(study)),
+        ("level", "Throttle and power", level_section(study)),
+        ("authority", "Authority", authority_section(study)),
+        ("comparison", "Yaw at constant thrust", comparison_section(study)),
+        ("attainable", "Attainable set", attainable_section(study)),
+        ("forward", "Forward maps", forward_section(study, bench)),
+        ("inverse", "Inverse maps", inverse_section(study)),
+        ("error", "Error of the inverse", error_section(study, &errors)),
+        ("cost", "Cost on the target", cost_section(study, &facts)),
+        ("matrices", "Allocation", table::matrices(study, &facts)),
+    ];
     let body = html! {
         h1 { (printable(&airframe.name)) }
         p.lead { (printable(&airframe.description)) }
-        nav id="contents" aria-label="Contents" { @for (anchor, title) in SECTIONS { a href={ "#" (anchor) } { (title) } " " } }
+        nav id="contents" aria-label="Contents" { @for (anchor, title, _) in &sections { a href={ "#" (anchor) } { (title) } " " } }
         (warnings(study, bench))
         (table::summary(study, &facts, digest))
-        @for (anchor, title) in SECTIONS {
-            section id=(anchor) { h2 { (title) } (section(anchor)) }
+        @for (anchor, title, content) in &sections {
+            section id=(anchor) { h2 { (title) } (content) }
         }
         footer {
             "Made by " code { "cargo mixer report" } " " (env!("CARGO_PKG_VERSION")) " from "
