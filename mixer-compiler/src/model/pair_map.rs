@@ -124,6 +124,16 @@ impl PairMap {
         ]
     }
 
+    /// The throttles that give `efforts`, by Newton's method from `start`; `None` where no throttles within the
+    /// range do.
+    pub fn inverse(&self, start: [f64; 2], efforts: [f64; 2]) -> Option<[f64; 2]> {
+        const CLOSE: f64 = 1e-9;
+        let exact = (0..50).fold(start, |throttles, _| self.newton(throttles, efforts));
+        let (given, scale) = (self.efforts(exact), self.scale());
+        let close = (0..2).all(|k| (given[k] - efforts[k]).abs() < CLOSE * scale[k]);
+        close.then_some(exact)
+    }
+
     /// A throttle limited to the range.
     pub(crate) fn clamp(&self, throttle: f64) -> f64 {
         throttle.clamp(self.range[0], self.range[1])

@@ -161,7 +161,6 @@ impl ReadingArgs {
                     units: self.units.clone(),
                     full_rpm: self.rpm_at_full,
                     swap: self.swap,
-                    ..ByHand::default()
                 },
                 pwm_range: self.pwm_range,
             },

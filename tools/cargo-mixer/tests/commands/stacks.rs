@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use serde_json::Value as Json;
 use toml::{Table, Value};
 
-use crate::{bench_data, folder, json, run, stderr};
+use crate::{bench_data, folder, run, stderr};
 
 /// A unit of an airframe file.
 #[derive(Debug, PartialEq)]
@@ -338,16 +338,20 @@ fn new_frames_are_those_of_the_stacks_tables() {
     }
 }
 
+/// Roll, pitch, yaw (N m) and thrust (N) of setpoints of 1, as `params` states them.
+fn setpoint_of_one(airframe: &str, stack: &str) -> [f64; 4] {
+    let told = printed(&["params", airframe, "--stack", stack]);
+    let (_, told) = told.split_once("# A setpoint of 1 is ").expect("the scale");
+    let words = told.lines().next().unwrap_or_default().split([' ', ',']);
+    let numbers: Vec<f64> = words.filter_map(|word| word.parse().ok()).collect();
+    numbers.try_into().expect("four numbers")
+}
+
 /// One unit of PX4's setpoints: where the rows of the effectiveness B are orthogonal, B+ is
 /// b / sum b^2 by axis, PX4's scale of roll and pitch is sqrt(sum / (non-zero / 2)), and that of yaw
 /// the largest entry.
 fn assert_units_of_px4(name: &str, units: &[Unit], airframe: &str) {
-    let told = printed(&["params", airframe, "--stack", "px4"]);
-    let told = told.split_once("# A setpoint of 1 is ").expect("the scale").1;
-    let numbers = told.lines().next().unwrap_or_default().split([' ', ',']);
-    let unit: Vec<f64> = numbers
-        .filter_map(|word| word.trim_end_matches('.').parse().ok())
-        .collect();
+    let unit = setpoint_of_one(airframe, "px4");
     let rotors = 2 * units.len();
     let thrust_n = unit[3] / rotors as f64;
     let of_axis = |axis: usize| {
@@ -455,12 +459,11 @@ fn ardupilot_units_are_those_of_its_tables() {
         let airframe = airframe.to_str().unwrap();
         // PX4 has no files of +, H and Y6 frames in the data: its formulas on the same places.
         assert_units_of_px4(&name, &units, airframe);
-        let summary: Json = json(&run(&["check", "--json", airframe]));
-        let unit = |key: &str| summary["normalised_ardupilot"][key].as_f64().unwrap();
+        let [roll_nm, pitch_nm, yaw_nm, thrust_n] = setpoint_of_one(airframe, "ardupilot");
         let motors = frame["motors"].as_array().unwrap();
         let factors: Vec<[f64; 3]> = motors.iter().map(factors).collect();
         let largest = |axis: usize| factors.iter().fold(0.0, |most: f64, f| most.max(f[axis].abs()));
-        let thrust_n = unit("thrust_n") / motors.len() as f64;
+        let thrust_n = thrust_n / motors.len() as f64;
         let own = printed(&["params", airframe, "--stack", "px4", "--own"]);
         let lever = |channel: usize, key: &str| value(&own, &format!("CA_ROTOR{channel}_{key}")).unwrap();
         let sum = |axis: usize, part: &dyn Fn(usize) -> f64| -> f64 {
@@ -471,25 +474,23 @@ fn ardupilot_units_are_those_of_its_tables() {
             terms.sum()
         };
         let expected = [
-            ("roll_nm", sum(0, &|channel| -thrust_n * lever(channel, "PY"))),
-            ("pitch_nm", sum(1, &|channel| thrust_n * lever(channel, "PX"))),
+            (roll_nm, sum(0, &|channel| -thrust_n * lever(channel, "PY"))),
+            (pitch_nm, sum(1, &|channel| thrust_n * lever(channel, "PX"))),
         ];
-        for (key, expected) in expected {
+        for (given, expected) in expected {
             assert!(
-                (unit(key) / expected - 1.0).abs() < 2e-3,
-                "{name} {key}: {} {expected}",
-                unit(key)
+                (given / expected - 1.0).abs() < 2e-3,
+                "{name}: {given} {expected}"
             );
         }
         // Half of every motor's torque; V has other yaw factors, which an airframe does not show.
         let moment = (0..motors.len())
             .map(|channel| lever(channel, "KM").abs())
             .sum::<f64>();
-        let yaw_nm = 0.5 * thrust_n * moment;
+        let expected = 0.5 * thrust_n * moment;
         assert!(
-            (unit("yaw_nm") / yaw_nm - 1.0).abs() < 2e-3,
-            "{name}: {} {yaw_nm}",
-            unit("yaw_nm")
+            (yaw_nm / expected - 1.0).abs() < 2e-3,
+            "{name}: {yaw_nm} {expected}"
         );
         let params = printed(&["params", airframe, "--stack", "ardupilot", "--own"]);
         let found = ["FRAME_CLASS", "FRAME_TYPE"].map(|name| value(&params, name));

@@ -107,12 +107,7 @@ impl<'a> Study<'a> {
         let tables = &self.compiled.tables;
         let asked = efforts.map(|effort| effort as f32);
         let found = tables.throttles(asked).map(f64::from);
-        // Newton's method from there converges in the set; elsewhere it is stopped by the edge of
-        // the box.
-        let exact = (0..8).fold(found, |throttles, _| self.pair.newton(throttles, efforts));
-        let (given, scale) = (self.pair.efforts(exact), self.pair.scale());
-        let close = (0..2).all(|k| (given[k] - efforts[k]).abs() < 1e-9 * scale[k]);
-        close.then_some(found)
+        self.pair.inverse(found, efforts).and(Some(found))
     }
 
     /// What the emitted inverse, run in f32 by `mixer-rt`, misses of the efforts at `throttles`,

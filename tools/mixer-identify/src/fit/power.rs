@@ -132,21 +132,11 @@ fn full_thrust(map: &PairMap) -> f64 {
     map.efforts([max; 2])[0]
 }
 
-/// The throttles of (f, Q) within the range, by Newton's method from equal throttles; nothing where
-/// there are none.
+/// The throttles of (f, Q) within the range; nothing where there are none.
 fn throttles(map: &PairMap, f: f64, q: f64) -> Option<[f64; 2]> {
     let ([min, max], full) = (map.range(), full_thrust(map));
-    let mut at = [(max * (f / full).clamp(0.0, 1.0).sqrt()).clamp(min, max); 2];
-    for _ in 0..50 {
-        let [u, l] = at;
-        at = map.newton(at, [f, q]);
-        if (at[0] - u).abs().max((at[1] - l).abs()) < 1e-10 {
-            break;
-        }
-    }
-    let [thrust, torque] = map.efforts(at);
-    let missed = (f - thrust).abs().max((q - torque).abs());
-    (missed < 1e-8 * full).then_some(at)
+    let equal = (max * (f / full).clamp(0.0, 1.0).sqrt()).clamp(min, max);
+    map.inverse([equal; 2], [f, q])
 }
 
 /// Examines the pair's files.
