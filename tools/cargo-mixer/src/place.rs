@@ -2,9 +2,10 @@
 //! airframe, standard output, or nowhere yet.
 
 use std::io::{Write as _, stdout};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+use clap::Args;
 use mixer_compiler::Source;
 use mixer_compiler::diagnostic::printable_lines;
 use mixer_files::new::new;
@@ -14,15 +15,22 @@ use mixer_identify::texts::Answer;
 use crate::frame_args::FrameArgs;
 use crate::{Done, bad_usage, output, print_error, print_note};
 
-/// Where the tables go, and in which form.
-pub(crate) struct Place<'a> {
-    /// The file; `-` is standard output.
-    pub(crate) output: Option<&'a Path>,
-    pub(crate) force: bool,
-    /// The frame of a whole airframe.
-    pub(crate) frame: Option<&'a FrameArgs>,
-    /// Whether the report is JSON.
-    pub(crate) json: bool,
+/// Where the answer of a bench command goes.
+#[derive(Debug, Clone, Args)]
+pub struct Place {
+    /// Write the tables here, whole or not at all; `-` for standard output (the report then goes to
+    /// standard error).
+    #[arg(short, long, value_name = "PAIR.toml")]
+    pub output: Option<PathBuf>,
+    /// Overwrite the output if it is there
+    #[arg(long)]
+    force: bool,
+    /// Write a whole airframe of this frame, not the tables alone
+    #[command(flatten)]
+    pub frame: Option<FrameArgs>,
+    /// Print everything as JSON in place of the report.
+    #[arg(long)]
+    json: bool,
 }
 
 /// The tables of an answer, or the airframe of this frame with them.
@@ -45,13 +53,13 @@ pub fn tables_or_airframe<T>(
     Ok(printable_lines(&text))
 }
 
-impl Place<'_> {
+impl Place {
     fn to_stdout(&self) -> bool {
-        self.output == Some(Path::new("-"))
+        self.output.as_deref() == Some(Path::new("-"))
     }
 
     fn file(&self) -> Option<&Path> {
-        self.output.filter(|_| !self.to_stdout())
+        self.output.as_deref().filter(|_| !self.to_stdout())
     }
 
     /// Refuses a place that cannot be written, before there is anything to write.
@@ -88,7 +96,7 @@ impl Place<'_> {
             (_, true) => &answer.details,
             _ => &answer.report,
         };
-        let text = tables_or_airframe(answer, self.frame, self.file()).map_err(bad_usage)?;
+        let text = tables_or_airframe(answer, self.frame.as_ref(), self.file()).map_err(bad_usage)?;
         let report = printable_lines(report);
         let out = if self.to_stdout() {
             print_note(report.trim_end());

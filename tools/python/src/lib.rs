@@ -202,13 +202,13 @@ mod _native {
             NoAnswer::Usage(message) => error(message),
             NoAnswer::Refused(refusals) => refused(refusals),
         })?;
-        texts(answer, args.frame.as_ref(), notes)
+        texts(answer, args.place.frame.as_ref(), notes)
     }
 
     #[pyfunction]
     fn predict(words: Vec<String>) -> Texts {
         let args: PredictArgs = parsed("predict", words.iter().map(String::as_str)).map_err(error)?;
         let answer = args.answer(&bench_files::text).map_err(refused)?;
-        texts(answer, args.frame.as_ref(), Vec::new())
+        texts(answer, args.place.frame.as_ref(), Vec::new())
     }
 }

@@ -136,12 +136,12 @@ pub fn make(words: &[String], files: &Files) -> Result<Made, Vec<Fault>> {
                 NoAnswer::Usage(message) => general(message.to_owned()),
                 NoAnswer::Refused(refusals) => refused(refusals),
             })?;
-            let text = tables_or_airframe(&answer, args.frame.as_ref(), args.output.as_deref());
+            let text = tables_or_airframe(&answer, args.place.frame.as_ref(), args.place.output.as_deref());
             Ok(answered(text.map_err(general)?, &answer, notes))
         }
         Make::Predict(args) => {
             let answer = args.answer(&reader).map_err(refused)?;
-            let text = tables_or_airframe(&answer, args.frame.as_ref(), args.output.as_deref());
+            let text = tables_or_airframe(&answer, args.place.frame.as_ref(), args.place.output.as_deref());
             Ok(answered(text.map_err(general)?, &answer, Vec::new()))
         }
         Make::Import(args) => {

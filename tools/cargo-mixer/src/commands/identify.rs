@@ -17,7 +17,6 @@ use mixer_identify::texts::{Answer, Prediction, identify};
 use crate::bench_args::{AirArgs, ReadingArgs, exponents, positive, throttle_box};
 use crate::bench_files::{self, Reader};
 use crate::commands::predict::{self, RotorArgs};
-use crate::frame_args::FrameArgs;
 use crate::pack::PackArgs;
 use crate::place::Place;
 use crate::{Done, bad_usage, print_note};
@@ -33,19 +32,9 @@ pub struct IdentifyArgs {
     /// Bench files (CSV).
     #[arg(required = true, value_name = "BENCH.csv")]
     pub files: Vec<PathBuf>,
-    /// Write the tables here, whole or not at all; `-` for standard output (the report then goes to
-    /// standard error).
-    #[arg(short, long, value_name = "PAIR.toml")]
-    pub output: Option<PathBuf>,
-    /// Overwrite the output if it is there
-    #[arg(long)]
-    pub force: bool,
-    /// Write a whole airframe of this frame, not the tables alone
+    /// Where the answer goes
     #[command(flatten)]
-    pub frame: Option<FrameArgs>,
-    /// Print everything as JSON in place of the verdict.
-    #[arg(long)]
-    pub json: bool,
+    pub place: Place,
     /// Print every number: cross-validation, coefficients with their intervals, fold, all warnings.
     #[arg(long, conflicts_with = "json")]
     pub verbose: bool,
@@ -186,12 +175,7 @@ impl IdentifyArgs {
 
 /// Runs the command: status 0, 1 for input that cannot serve, 2 for bad usage.
 pub fn run(args: &IdentifyArgs) -> Done {
-    let place = Place {
-        output: args.output.as_deref(),
-        force: args.force,
-        frame: args.frame.as_ref(),
-        json: args.json,
-    };
+    let place = &args.place;
     let runs = [&args.prior, &args.lower_out, &args.upper_out];
     place.check(args.files.iter().chain(runs.into_iter().flatten()))?;
     let (answer, notes) = args.answer(&bench_files::text).map_err(|none| match none {

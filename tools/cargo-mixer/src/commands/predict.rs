@@ -20,7 +20,6 @@ use crate::Done;
 use crate::bench_args;
 use crate::bench_args::{AirArgs, positive, pwm_range, role, sign_choice, throttle_box, within};
 use crate::bench_files::{self, Reader};
-use crate::frame_args::FrameArgs;
 use crate::pack::PackArgs;
 use crate::place::Place;
 
@@ -58,18 +57,9 @@ pub struct PredictArgs {
     /// The throttles to command; the lower is raised where the map asks for it [default: 0.2,1].
     #[arg(long, value_name = "MIN,MAX", value_parser = throttle_box)]
     pub throttle: Option<ThrottleBox>,
-    /// Write the tables here, whole or not at all; `-` for standard output.
-    #[arg(short, long, value_name = "PAIR.toml")]
-    pub output: Option<PathBuf>,
-    /// Overwrite the output if it is there
-    #[arg(long)]
-    pub force: bool,
-    /// Write a whole airframe of this frame, not the tables alone
+    /// Where the answer goes
     #[command(flatten)]
-    pub frame: Option<FrameArgs>,
-    /// Print everything as JSON in place of the report.
-    #[arg(long)]
-    pub json: bool,
+    pub place: Place,
     /// Pulse widths of throttle 0 and 1, microseconds [default for pulse-width columns: 1000,2000].
     #[arg(long, value_name = "LOW,HIGH", value_parser = pwm_range)]
     pub pwm_range: Option<[f64; 2]>,
@@ -221,12 +211,7 @@ pub(crate) fn exponents(given: Option<[f64; 2]>, held: bool) -> [f64; 2] {
 
 /// Runs the command: status 0, 1 for input that cannot serve, 2 for bad usage.
 pub fn run(args: &PredictArgs) -> Done {
-    let place = Place {
-        output: args.output.as_deref(),
-        force: args.force,
-        frame: args.frame.as_ref(),
-        json: args.json,
-    };
+    let place = &args.place;
     place.check(args.rotors.lower_single.iter().chain([&args.single]))?;
     let answer = args.answer(&bench_files::text);
     let answer = answer.map_err(|refusals| place.refused(&refusals))?;
