@@ -8,7 +8,6 @@ use mixer_identify::bench::Preparation;
 use mixer_identify::bench::air::BenchAir;
 use mixer_identify::bench::header::ByHand;
 use mixer_identify::bench::read::Reading;
-use mixer_identify::bench::sign::SignChoice;
 use mixer_identify::fit::basis::ThrottleBox;
 use mixer_identify::identified::Settings;
 use mixer_identify::refusal::Refusal;
@@ -18,7 +17,7 @@ use mixer_identify::texts::{self, Answer, Prediction, Text};
 
 use crate::Done;
 use crate::bench_args;
-use crate::bench_args::{AirArgs, positive, pwm_range, role, sign_choice, throttle_box, within};
+use crate::bench_args::{AirArgs, ReadingArgs, positive, throttle_box, within};
 use crate::bench_files::{self, Reader};
 use crate::pack::PackArgs;
 use crate::place::Place;
@@ -37,10 +36,9 @@ pub struct PredictArgs {
     /// What is known of the rotors beside the run
     #[command(flatten)]
     pub rotors: RotorArgs,
-    /// The speed controller holds a speed: the speed at full throttle, revolutions per minute.
-    /// Throttle is then the column of the speed over it, or --column throttle=HEADER.
-    #[arg(long, value_name = "RPM", value_parser = positive)]
-    pub rpm_at_full: Option<f64>,
+    /// How the run is read; `upper` is the role of its rotor, `throttle` the same
+    #[command(flatten)]
+    pub reading: ReadingArgs,
     /// Bring the rows of the run to this voltage, V [default: their mean].
     #[arg(long, value_name = "VOLT", value_parser = positive)]
     pub reference_voltage: Option<f64>,
@@ -60,22 +58,6 @@ pub struct PredictArgs {
     /// Where the answer goes
     #[command(flatten)]
     pub place: Place,
-    /// Pulse widths of throttle 0 and 1, microseconds [default for pulse-width columns: 1000,2000].
-    #[arg(long, value_name = "LOW,HIGH", value_parser = pwm_range)]
-    pub pwm_range: Option<[f64; 2]>,
-    /// A column by hand, as throttle="ESC" or thrust=#2 (number from 1).
-    #[arg(long = "column", value_name = "ROLE=HEADER", value_parser = role)]
-    pub columns: Vec<(String, String)>,
-    /// A unit by hand, as throttle=% or thrust=gf, for a header without one.
-    #[arg(long = "unit", value_name = "ROLE=UNIT", value_parser = role)]
-    pub units: Vec<(String, String)>,
-    /// Take off all rows what the load cells read at rest, in the mean of the rows at rest: throttle 0
-    /// with speeds of 0 or several rows that agree.
-    #[arg(long)]
-    pub tare: bool,
-    /// Sign of thrust: auto, + or -.
-    #[arg(long, value_name = "SIGN", default_value = "auto", value_parser = sign_choice, allow_hyphen_values = true)]
-    pub thrust_sign: SignChoice,
 }
 
 /// Units in which lengths are given by mistake.
@@ -178,12 +160,9 @@ impl RotorArgs {
 impl PredictArgs {
     /// The settings that the arguments ask for.
     pub fn settings(&self) -> Settings {
-        let mut settings = self.rotors.reading(self.air.air(), self.rpm_at_full);
-        settings.reading.by_hand.columns = self.columns.clone();
-        settings.reading.by_hand.units = self.units.clone();
-        settings.reading.pwm_range = self.pwm_range;
-        settings.preparation.signs.thrust = self.thrust_sign;
-        settings.preparation.tare = self.tare;
+        let mut settings = self.reading.settings();
+        settings.preparation.own_columns = true;
+        settings.preparation.air = self.air.air();
         settings
     }
 
@@ -192,7 +171,7 @@ impl PredictArgs {
     /// # Errors
     /// Files that cannot serve.
     pub fn answer(&self, reader: Reader<'_>) -> Result<Answer<Predicted>, Vec<Refusal>> {
-        let held = self.rpm_at_full.is_some();
+        let held = self.reading.rpm_at_full.is_some();
         let exponents = exponents(self.voltage_exponent, held);
         let how = Prediction {
             run: self.settings(),
