@@ -22,7 +22,7 @@ const PACKAGES: [(&str, usize); 11] = [
     ("mixer-macros", 0),
     ("isolated-rotors", 1),
     ("mixer-identify", 30),
-    ("mixer-facts", 12),
+    ("mixer-facts", 10),
     ("mixer-files", 44),
     ("cargo-mixer", 25),
     ("simulation", 10),

@@ -1,7 +1,7 @@
 //! The tables, in Markdown.
 
 use isolated_rotors::IsolatedTables;
-use mixer_compiler::airframe::{Basis, KEYS};
+use mixer_compiler::airframe::KEYS;
 use mixer_compiler::atmosphere::{self, density_at, pressure_at};
 use mixer_compiler::diagnostic::rounded_up;
 use mixer_compiler::spec::keys::{Key, Kind, Shape};
@@ -12,7 +12,7 @@ use mixer_files::report::study::Study;
 use mixer_rt::Wrench;
 
 use super::Table;
-use crate::{airframes, allocators, bases, golden, interaction, root, thin_air};
+use crate::{airframes, allocators, golden, root, thin_air};
 
 /// The airframe of the paper.
 const PAPER: &str = "isae-x8";
@@ -200,7 +200,7 @@ pub(super) fn accuracy() -> Result<String, String> {
 }
 
 /// Yaw commands of [`static_comparison`], from zero to the largest.
-const YAW_COMMANDS: usize = 9;
+const YAW_COMMANDS: usize = 5;
 
 /// Section V-A of the paper: yaw commands at constant thrust, and what units of each spin really
 /// give.
@@ -276,160 +276,6 @@ pub(super) fn allocators() -> Result<String, String> {
     ))
 }
 
-/// Leave-one-out errors of the three bases on real maps.
-pub(super) fn bases() -> Result<String, String> {
-    let path = bases::file();
-    let held = measured(&path)?;
-    let rows = held
-        .chunks(3)
-        .map(|of_map| {
-            let mut cells = Vec::new();
-            let mut choice = String::new();
-            for row in of_map {
-                let [map, basis, thrust, torque, _, chosen] = &row[..] else {
-                    return Err(format!("{}: not a row: {row:?}", path.display()));
-                };
-                if cells.is_empty() {
-                    cells.push(map.clone());
-                }
-                cells.push(format!("{thrust}, {torque}"));
-                if chosen == "chosen" {
-                    choice.clone_from(basis);
-                }
-            }
-            cells.push(choice);
-            Ok(cells)
-        })
-        .collect::<Result<Vec<_>, _>>()?;
-    Ok(markdown(
-        &["map", "biquadratic", "cubic", "quartic", "chosen"],
-        &rows,
-    ))
-}
-
-/// Errors of predicted pairs on real maps, and their means.
-pub(super) fn interaction() -> Result<String, String> {
-    let [path, _] = interaction::files();
-    let held = measured(&path)?;
-    let mut sums = [0.0; 12];
-    let mut rows = Vec::new();
-    for row in &held {
-        let fault = || format!("{}: not a row: {row:?}", path.display());
-        let [rotor, spacing_ratio, errors @ ..] = &row[..] else {
-            return Err(fault());
-        };
-        if errors.len() != sums.len() {
-            return Err(fault());
-        }
-        for (sum, error) in sums.iter_mut().zip(errors) {
-            *sum += error.parse::<f64>().map_err(|_| fault())? / held.len() as f64;
-        }
-        rows.push((format!("{rotor}, z/D {spacing_ratio}"), errors.to_vec()));
-    }
-    rows.push(("mean".to_owned(), sums.map(|mean| format!("{mean:.2}")).to_vec()));
-    let cells = rows.into_iter().map(|(name, errors)| {
-        let pairs = errors.chunks(2).map(|pair| pair.join(", "));
-        [name].into_iter().chain(pairs).collect::<Vec<String>>()
-    });
-    let header: Vec<&str> = ["map"].into_iter().chain(interaction::PREDICTIONS).collect();
-    Ok(markdown(&header, &cells.collect::<Vec<_>>()))
-}
-
-/// Constants of the interaction by what they were fitted on.
-pub(super) fn interaction_constants() -> Result<String, String> {
-    let [_, path] = interaction::files();
-    Ok(markdown(
-        &["fitted on", "B", "m0", "m1", "n", "a", "b"],
-        &measured(&path)?,
-    ))
-}
-
-/// Rows of `tests/measurements/<name>`, of as many cells.
-fn cells<const N: usize>(name: &str) -> Result<Vec<[String; N]>, String> {
-    let path = root().join("tests/measurements").join(name);
-    let rows = measured(&path)?.into_iter();
-    rows.map(|row| {
-        row.try_into()
-            .map_err(|row| format!("{}: not a row: {row:?}", path.display()))
-    })
-    .collect()
-}
-
-/// Errors of thinned maps by levels and basis.
-pub(super) fn levels() -> Result<String, String> {
-    let rows: Vec<Vec<String>> = cells::<4>("levels.csv")?
-        .chunks(Basis::ALL.len())
-        .map(|bases| {
-            let levels = format!("{0} x {0}", bases[0][0]);
-            let errors = bases.iter().map(|[_, _, thrust, torque]| match thrust.as_str() {
-                "" => "refused".to_owned(),
-                _ => format!("{thrust} %, {torque} %"),
-            });
-            [levels].into_iter().chain(errors).collect()
-        })
-        .collect();
-    Ok(markdown(
-        &[
-            "levels",
-            "biquadratic: thrust, torque",
-            "cubic: thrust, torque",
-            "quartic: thrust, torque",
-        ],
-        &rows,
-    ))
-}
-
-/// Errors of models of other spacings and of the one interpolated between them.
-pub(super) fn spacings() -> Result<String, String> {
-    let rows: Vec<Vec<String>> = cells("spacings.csv")?
-        .into_iter()
-        .map(|[map, thrust, torque]| vec![map, format!("{thrust} %"), format!("{torque} %")])
-        .collect();
-    Ok(markdown(&["map", "thrust", "torque"], &rows))
-}
-
-/// What is said of mistakes, by their kind, and how many there are.
-pub(super) fn mistakes() -> Result<String, String> {
-    let counts = cells::<5>("mistakes.csv")?;
-    let sum = |column: usize| -> usize {
-        counts
-            .iter()
-            .filter_map(|row| row[column].parse::<usize>().ok())
-            .sum()
-    };
-    let sums = [1, 2, 3, 4].map(|column| sum(column).to_string());
-    let all = [vec!["all".to_owned()], sums.to_vec()].concat();
-    let rows: Vec<Vec<String>> = counts.into_iter().map(Vec::from).chain([all]).collect();
-    let header = ["kind", "read rightly", "told", "refused", "silent"];
-    Ok(markdown(&header, &rows))
-}
-
-/// The saving of the power bias over logged flights.
-pub(super) fn logged_saving() -> Result<String, String> {
-    let rows: Vec<Vec<String>> = cells("logged-saving.csv")?
-        .into_iter()
-        .map(|[flight, tilt, speed, roll, pitch, yaw, least, most, saved]| {
-            vec![
-                flight,
-                format!("{tilt}°, {speed} m/s"),
-                format!("{roll} %, {pitch} %, {yaw} %"),
-                format!("{least} to {most}"),
-                format!("{saved} %"),
-            ]
-        })
-        .collect();
-    Ok(markdown(
-        &[
-            "flight",
-            "tilt, speed up to",
-            "roll, pitch, yaw, rms",
-            "thrust over its mean",
-            "saved",
-        ],
-        &rows,
-    ))
-}
-
 /// Yaw and thrust of X8s and a Y6 that are asked for all yaw near full thrust, with a yaw reserve
 /// and without.
 pub(super) fn yaw_reserve() -> Result<String, String> {
@@ -459,7 +305,7 @@ pub(super) fn yaw_reserve() -> Result<String, String> {
         let full = plain.thrust_range_n[1];
         // More yaw than any of them has.
         let yaw_nm = 10.0;
-        for percent in [60.0, 80.0, 100.0] {
+        for percent in [80.0, 100.0] {
             let setpoint = Wrench {
                 yaw_nm,
                 thrust_n: 0.01 * percent * full,
@@ -505,7 +351,7 @@ pub(super) fn steep() -> Result<String, String> {
     for name in [PAPER, "x8-11in-cubic", "x8-16in-quartic", "x8-22in-cubic"] {
         let compiled = golden::compile(name)?;
         let volts = compiled.airframe.reference_v() as f32;
-        for percent in [16.0, 35.0, 50.0] {
+        for percent in [16.0, 50.0] {
             let thrust_n = 0.01 * percent * compiled.thrust_range_n[1];
             let mix = |yaw_nm: f32| {
                 let setpoint = Wrench {
@@ -538,26 +384,6 @@ pub(super) fn steep() -> Result<String, String> {
             "0 to 15 % of it",
             "75 to 90 %",
             "85 to 100 %",
-        ],
-        &rows,
-    ))
-}
-
-/// Thrust command over weight of an ordinary mixer in logged flights.
-pub(super) fn logged_hover() -> Result<String, String> {
-    let rows: Vec<Vec<String>> = cells("logged-hover.csv")?
-        .into_iter()
-        .map(|[flight, mean, deviation, rows, scale, low, high]| {
-            let command = format!("{mean} ± {deviation}");
-            vec![flight, command, rows, format!("{scale} ({low} to {high})")]
-        })
-        .collect();
-    Ok(markdown(
-        &[
-            "flight",
-            "command over weight",
-            "rows in hover",
-            "predicted pair over measured",
         ],
         &rows,
     ))

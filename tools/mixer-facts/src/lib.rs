@@ -1,6 +1,7 @@
 //! What a compiled airframe gives, costs and risks, as one list of [`facts`]: numbers with units and
 //! words. The verdict of [`check`], its report and JSON, the report page and [`compare`] print it;
-//! firmware needs nothing of it.
+//! firmware needs nothing of it. [`command`] is `cargo mixer check` itself, with its files ([`input`]) and its
+//! [`terminal`]: it is compiled alone in a clone.
 //!
 //! ```
 //! use mixer_compiler::Source;

@@ -1,7 +1,9 @@
 //! Files about an airframe, as texts: new ones of regular frames, ones from a flight stack's
-//! parameters, parameters for a flight stack, the JSON schema, golden outputs.
+//! parameters, parameters for a flight stack, the JSON schema, golden outputs, the report page, what a
+//! flight log says of the model, C libraries.
 //!
-//! Texts in, texts and notes out. Nothing here reads or writes files.
+//! Texts in, texts and notes out. Only [`library`] touches the disk: it runs the Rust compiler in a folder of
+//! its own.
 //!
 //! ```
 //! use mixer_compiler::Source;

@@ -1,7 +1,7 @@
 //! The report page of a compiled airframe, its figures and their data: [`Compiled`] in, text out.
 //!
 //! [`page::page`] writes one self-contained HTML page. [`data::sweep`] writes the data of a figure
-//! as CSV. [`gallery`] draws figures as SVG files. Nothing here reads or writes files.
+//! as CSV. [`pictures`] draws figures as SVG files. Nothing here reads or writes files.
 //!
 //! ```
 //! use mixer_compiler::Source;
@@ -25,12 +25,12 @@ pub mod data;
 pub mod effort;
 pub mod field;
 pub mod figure;
-pub mod gallery;
 pub mod layout;
 pub mod level;
 pub mod maps;
 pub mod number;
 pub mod page;
+pub mod pictures;
 pub mod plots;
 mod rows;
 pub mod study;

@@ -49,8 +49,6 @@ fn prints_the_tables_and_writes_figures_and_data() {
         assert!(text.contains(&format!("{ratio}\n")), "{ratio} in\n{text}");
     }
     assert!(text.contains("What it does not"), "{text}");
-    assert_eq!(text.matches("J without a power bias").count(), 3, "{text}");
-    assert_eq!(text.matches("rotor stops, unknown for").count(), 18, "{text}");
 
     for scenario in SCENARIOS {
         for figure in ["fig8-position", "fig9-yaw", "fig10-thrust"] {

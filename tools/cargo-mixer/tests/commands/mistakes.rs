@@ -14,7 +14,7 @@
 //! The outcome is `refused` (a status other than 0), `told` (something is said that is not said of the
 //! right inputs), `read` (the same result as of the right inputs, nothing said) or `silent: reason`:
 //! another result, and nothing said. `MIXER_BLESS=1` writes outcomes anew; a silent mistake needs its
-//! reason by hand. `tests/measurements/mistakes.csv` has their counts, the page of warnings its table.
+//! reason by hand. `tests/measurements/mistakes.csv` has their counts.
 
 use std::collections::BTreeSet;
 use std::fmt::Write as _;

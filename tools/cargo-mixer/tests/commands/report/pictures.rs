@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::fs;
 
-use mixer_files::report::gallery;
+use mixer_files::report::pictures;
 use roxmltree::Document;
 
 use super::{airframes, root};
@@ -11,12 +11,11 @@ use super::{airframes, root};
 #[test]
 fn the_documents_pictures_are_current() {
     let airframes = airframes();
-    let mut drawn = gallery::gallery(&airframes);
     let x8 = airframes
         .iter()
         .find(|compiled| compiled.airframe.name == "isae-x8")
         .unwrap();
-    drawn.append(&mut gallery::figures(x8));
+    let drawn = pictures::pictures(x8);
     let mut stale = Vec::new();
     for (name, text) in &drawn {
         if name.ends_with(".svg") {
@@ -27,7 +26,7 @@ fn the_documents_pictures_are_current() {
             stale.push(name.clone());
         }
     }
-    assert!(stale.is_empty(), "{stale:?} are stale; run `cargo gallery`");
+    assert!(stale.is_empty(), "{stale:?} are stale; run `cargo pictures`");
     let names: BTreeSet<String> = fs::read_dir(root().join("docs"))
         .unwrap()
         .map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned())

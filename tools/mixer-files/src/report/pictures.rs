@@ -1,0 +1,45 @@
+//! Figures of one airframe as files of their own, for documents.
+
+use std::collections::BTreeMap;
+
+use mixer_compiler::Compiled;
+
+use crate::report::comparison::Comparison;
+use crate::report::data::YAW_COMMANDS;
+use crate::report::effort::Effort;
+use crate::report::figure::Figure;
+use crate::report::page::FIGURE_STYLE;
+use crate::report::study::Study;
+use crate::report::{maps, plots};
+
+/// The files by name: forward, inverse and error map, attainable set, thrust over yaw.
+pub fn pictures(compiled: &Compiled) -> BTreeMap<String, String> {
+    let study = Study::new(compiled, None);
+    let thrust = Effort::Thrust;
+    let mut figures = vec![
+        ("forward-thrust", maps::forward(&study, thrust, None)),
+        ("inverse-upper", maps::inverse(&study, 0)),
+        (
+            "error-thrust",
+            maps::error(&study, thrust, &maps::error_field(&study, thrust)),
+        ),
+        ("attainable", plots::attainable(&study)),
+    ];
+    if let Some(comparison) = Comparison::sweep(&study, YAW_COMMANDS) {
+        figures.push(("yaw", plots::yaw_plane(&study, &comparison)));
+        figures.push(("yaw-total", plots::yaw_total(&comparison)));
+    }
+    let name = &compiled.airframe.name;
+    let file = |(picture, figure): (&str, Figure)| (format!("{name}-{picture}.svg"), styled(&figure.svg()));
+    figures.into_iter().map(file).collect()
+}
+
+/// A picture with the style that the page would give it, and a ground of its own: documents may be
+/// light or dark.
+fn styled(svg: &str) -> String {
+    let style = format!("<style>\n{FIGURE_STYLE}svg.figure {{ background: var(--paper); }}\n</style>\n");
+    match svg.split_once('\n') {
+        Some((start, rest)) => format!("{start}\n{style}{rest}"),
+        None => svg.to_owned(),
+    }
+}
