@@ -177,6 +177,108 @@ pub const STOP_THROTTLE: f64 = 0.005;
 /// Most points of a file: 100 levels of each rotor, plateaus of a streaming log counted as one.
 const MOST_POINTS: usize = 10_000;
 
+/// Which rotors turned in a log.
+struct Turned {
+    kind: Kind,
+    /// Of the two, or the one that turned.
+    rotors: &'static [usize],
+    /// Whether the log has a throttle for each.
+    two_throttles: bool,
+    /// Whether the stand drives both by one signal.
+    one_signal: bool,
+}
+
+impl Turned {
+    /// By the throttles; one signal becomes the throttle of both.
+    fn of(samples: &mut [Sample], columns: &Columns, how: &Preparation) -> Turned {
+        let one_throttle = columns[Quantity::Throttle].rotors[1].is_none();
+        let one_signal = one_throttle && (how.is_correction || of_both(columns, samples));
+        if one_signal {
+            samples.iter_mut().for_each(|s| s.throttle[1] = s.throttle[0]);
+        }
+        let two_throttles = one_signal || !one_throttle;
+        let [upper, lower] = [0, 1].map(|rotor| samples.iter().any(|s| s.throttle[rotor] > STOP_THROTTLE));
+        let (kind, rotors): (Kind, &[usize]) = match (two_throttles, upper, lower) {
+            (true, true, true) => (Kind::Pair, &[0, 1]),
+            (true, false, _) => (Kind::SingleRotor, &[1]),
+            _ => (Kind::SingleRotor, &[0]),
+        };
+        Turned {
+            kind,
+            rotors,
+            two_throttles,
+            one_signal,
+        }
+    }
+
+    /// What the user should know of it.
+    fn note(&self, columns: &Columns, how: &Preparation) -> Option<String> {
+        match self.kind {
+            Kind::SingleRotor if self.two_throttles && !how.own_columns => {
+                let still = if self.rotors == [0] { "lower" } else { "upper" };
+                Some(format!(
+                    "the {still} rotor stands still throughout: a single rotor"
+                ))
+            }
+            Kind::Pair if !columns.sides_named && !self.one_signal => {
+                let upper = columns[Quantity::Throttle].rotors[0].as_ref();
+                Some(format!(
+                    "the header does not say which rotor is above: that of {:?} is taken (--swap exchanges)",
+                    upper.map_or("", |column| column.name.as_str())
+                ))
+            }
+            _ => None,
+        }
+    }
+
+    /// Whether every throttle of a row is off.
+    fn is_rest(&self, sample: &Sample) -> bool {
+        let throttles = &sample.throttle[..1 + usize::from(self.two_throttles)];
+        throttles.iter().all(|&t| t <= STOP_THROTTLE)
+    }
+
+    /// Whether a throttle of a rotor that turned is off. An empty one is not: its row is refused later, with its
+    /// line.
+    fn is_start_or_stop(&self, sample: &Sample) -> bool {
+        self.rotors
+            .iter()
+            .any(|&rotor| sample.throttle[rotor] <= STOP_THROTTLE)
+    }
+
+    /// A row with its thrust and torque as a point.
+    fn point(
+        &self,
+        sample: &Sample,
+        (thrust, torque): (f64, f64),
+        may_lack_torque: bool,
+    ) -> Result<Point, &'static str> {
+        let [u, l] = match self.kind {
+            Kind::Pair => sample.throttle,
+            Kind::SingleRotor => [sample.throttle[self.rotors[0]], 0.0],
+        };
+        let lacks_torque = self.kind == Kind::Pair && !may_lack_torque && torque.is_nan();
+        if u.is_nan() || l.is_nan() {
+            return Err("the throttle is empty");
+        } else if thrust.is_nan() {
+            return Err("the thrust is empty");
+        } else if lacks_torque {
+            return Err("the torque is empty");
+        }
+        let [voltage, imbalance] = supply(self.rotors, sample.voltage);
+        Ok(Point {
+            line: sample.line,
+            u,
+            l,
+            thrust,
+            torque,
+            voltage,
+            imbalance,
+            power_w: sample.power_w,
+            cells: [0, 1, 2, 3].map(|k| [sample.thrust, sample.torque][k / 2].rotors[k % 2]),
+        })
+    }
+}
+
 /// Makes a log ready.
 ///
 /// # Errors
@@ -198,52 +300,13 @@ pub fn prepare(log: Log, how: &Preparation) -> Result<Bench, Refusal> {
         None => air.map(|air| plausible(&name, air)).transpose()?,
         given => given.clone(),
     };
-    // A stand that drives both rotors by one signal.
-    let one_signal =
-        columns[Quantity::Throttle].rotors[1].is_none() && (how.is_correction || of_both(&columns, &samples));
-    if one_signal {
-        samples.iter_mut().for_each(|s| s.throttle[1] = s.throttle[0]);
-    }
-    let two_throttles = one_signal || columns[Quantity::Throttle].rotors[1].is_some();
-    let turns = |rotor: usize| samples.iter().any(|s| s.throttle[rotor] > STOP_THROTTLE);
-    let kind = match two_throttles && turns(0) && turns(1) {
-        true => Kind::Pair,
-        false => Kind::SingleRotor,
-    };
-    // Of a single rotor: its index among the throttles.
-    let rotor = usize::from(two_throttles && !turns(0));
-    match kind {
-        Kind::SingleRotor if two_throttles && !how.own_columns => notes.push(format!(
-            "the {} rotor stands still throughout: a single rotor",
-            ["lower", "upper"][rotor]
-        )),
-        Kind::Pair if !columns.sides_named && !one_signal => {
-            let upper = columns[Quantity::Throttle].rotors[0].as_ref();
-            notes.push(format!(
-                "the header does not say which rotor is above: that of {:?} is taken (--swap exchanges)",
-                upper.map_or("", |column| column.name.as_str())
-            ));
-        }
-        _ => {}
-    }
-
-    let stands = |throttle: f64| throttle <= STOP_THROTTLE;
-    let both = |s: &Sample| {
-        s.throttle[..1 + usize::from(two_throttles)]
-            .iter()
-            .all(|&t| stands(t))
-    };
-    let tare = tare::examine(&mut samples, both, how.tare);
-
-    // An empty throttle is no start or stop row: it stays and is refused later, with its line.
+    let turned = Turned::of(&mut samples, &columns, how);
+    notes.extend(turned.note(&columns, how));
+    let tare = tare::examine(&mut samples, |s| turned.is_rest(s), how.tare);
     let before = samples.len();
-    samples.retain(|s| match kind {
-        Kind::Pair => !s.throttle.iter().any(|&t| t <= STOP_THROTTLE),
-        Kind::SingleRotor => s.throttle[rotor].is_nan() || s.throttle[rotor] > STOP_THROTTLE,
-    });
+    samples.retain(|s| !turned.is_start_or_stop(s));
     let start_stop_rows = before - samples.len();
-    let turning: &[usize] = if kind == Kind::Pair { &[0, 1] } else { &[rotor] };
-    for &rotor in turning {
+    for &rotor in turned.rotors {
         supplied(&name, rotor, &mut samples, &mut refused, &mut notes);
     }
     let (streaming, mut settling_rows) = (plateau::is_streaming(&samples), 0);
@@ -257,44 +320,19 @@ pub fn prepare(log: Log, how: &Preparation) -> Result<Bench, Refusal> {
             "the mean of what was recorded at each command",
         ));
     }
-
-    let may_lack = how.is_correction || one_signal;
-    let (signs, sums) = match kind {
+    let may_lack_torque = how.is_correction || turned.one_signal;
+    let (signs, sums) = match turned.kind {
         Kind::Pair => {
             notes.extend(uneven_levels(&samples));
-            sign::pair(&name, &columns, &samples, &how.signs, may_lack, &mut notes)?
+            sign::pair(&name, &columns, &samples, &how.signs, may_lack_torque, &mut notes)?
         }
-        Kind::SingleRotor => sign::single(&columns, rotor, how.own_columns, &samples, &how.signs),
+        Kind::SingleRotor => sign::single(&columns, turned.rotors[0], how.own_columns, &samples, &how.signs),
     };
     let mut points = Vec::new();
-    for (sample, (thrust, torque)) in samples.iter().zip(sums) {
-        let ([u, l], torque_counts) = match kind {
-            Kind::Pair => (sample.throttle, !may_lack),
-            Kind::SingleRotor => ([sample.throttle[rotor], 0.0], false),
-        };
-        let missing = [
-            (u.is_nan() || l.is_nan(), "the throttle is empty"),
-            (thrust.is_nan(), "the thrust is empty"),
-            (torque.is_nan() && torque_counts, "the torque is empty"),
-        ];
-        match missing.iter().find(|(is, _)| *is) {
-            Some((_, reason)) => {
-                refused.push(RefusedRow::new(&name, sample.line, Fault::new(*reason, *reason)))
-            }
-            None => {
-                let [voltage, imbalance] = supply(turning, sample.voltage);
-                points.push(Point {
-                    line: sample.line,
-                    u,
-                    l,
-                    thrust,
-                    torque,
-                    voltage,
-                    imbalance,
-                    power_w: sample.power_w,
-                    cells: [0, 1, 2, 3].map(|k| [sample.thrust, sample.torque][k / 2].rotors[k % 2]),
-                })
-            }
+    for (sample, sums) in samples.iter().zip(sums) {
+        match turned.point(sample, sums, may_lack_torque) {
+            Ok(point) => points.push(point),
+            Err(reason) => refused.push(RefusedRow::new(&name, sample.line, Fault::new(reason, reason))),
         }
     }
     match streaming {
@@ -316,13 +354,13 @@ pub fn prepare(log: Log, how: &Preparation) -> Result<Bench, Refusal> {
             "rows with both rotors turning and thrust and torque measured",
         ));
     }
+    let alone = turned.kind == Kind::SingleRotor && turned.two_throttles;
     Ok(Bench {
         no_power: columns.no_power(),
-        turning: (kind == Kind::SingleRotor && two_throttles)
-            .then_some([Turning::Upper, Turning::Lower][rotor]),
+        turning: alone.then_some([Turning::Upper, Turning::Lower][turned.rotors[0]]),
         file: name,
         format: columns.format,
-        kind,
+        kind: turned.kind,
         rows,
         start_stop_rows,
         streaming,
