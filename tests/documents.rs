@@ -49,21 +49,19 @@ fn allocators_measure_what_is_held() {
 }
 
 #[test]
+#[ignore = "needs MIXER_BENCH_DATA"]
 fn bases_measure_what_is_held() {
-    let Some(data) = std::env::var_os("MIXER_BENCH_DATA") else {
-        eprintln!("NOT RUN: bases_measure_what_is_held needs MIXER_BENCH_DATA");
-        return;
-    };
+    let data =
+        std::env::var_os("MIXER_BENCH_DATA").expect("MIXER_BENCH_DATA names the folder of the bench files");
     let rows = bases::measure(Path::new(&data)).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(read(&bases::file()), bases::text(&rows), "run `cargo bases`");
 }
 
 #[test]
+#[ignore = "needs MIXER_BENCH_DATA"]
 fn predictions_measure_what_is_held() {
-    let Some(data) = std::env::var_os("MIXER_BENCH_DATA") else {
-        eprintln!("NOT RUN: predictions_measure_what_is_held needs MIXER_BENCH_DATA");
-        return;
-    };
+    let data =
+        std::env::var_os("MIXER_BENCH_DATA").expect("MIXER_BENCH_DATA names the folder of the bench files");
     let measured = interaction::measure(Path::new(&data)).unwrap_or_else(|error| panic!("{error}"));
     for (path, text) in interaction::files().iter().zip(measured.texts()) {
         assert_eq!(read(path), text, "run `cargo interaction`");

@@ -8,8 +8,17 @@ use std::process::Command;
 
 use isolated_rotors::IsolatedTables;
 use mixer_rt::{Wrench, tables::Airmode};
-use mixer_tests::{airframes, golden, root};
+use mixer_tests::{golden, root};
 
+/// Frames of one to six units. X8s that differ by their pair alone differ by two numbers here.
+const AIRFRAMES: [&str; 6] = [
+    "coaxial-bicopter",
+    "isae-x8",
+    "px4-x12",
+    "px4-y6",
+    "single-pair",
+    "x8-22in-cubic",
+];
 /// Random setpoints per airframe.
 const SETPOINTS: &str = "200";
 /// The oracle prints seven decimals; a throttle is an f32 of thrusts up to some hundred newtons.
@@ -41,9 +50,9 @@ fn rows(csv: &str) -> impl Iterator<Item = Vec<f64>> {
 #[test]
 fn isolated_rotors_are_mixed_as_the_oracle_does() {
     let mut faults = Vec::new();
-    for airframe in airframes().expect("airframes/") {
+    for airframe in AIRFRAMES {
         let path = format!("airframes/{airframe}.toml");
-        let tables = IsolatedTables::new(&golden::compile(&airframe).unwrap_or_else(|e| panic!("{e}")));
+        let tables = IsolatedTables::new(&golden::compile(airframe).unwrap_or_else(|e| panic!("{e}")));
         let asked = oracle(&["draw", &path, SETPOINTS, "5"]);
         let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{airframe}.isolated.csv"));
         fs::write(&file, &asked).expect("scratch folder");

@@ -14,7 +14,7 @@ use mixer_rt::Health;
 use mixer_tests::{airframes, frames, golden, root};
 
 /// Random setpoints per frame.
-const SETPOINTS: usize = 1500;
+const SETPOINTS: usize = 500;
 
 /// Of the frames, and how many are drawn.
 const SEED: u64 = 1;

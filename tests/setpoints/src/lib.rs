@@ -125,14 +125,14 @@ impl Digest {
     /// Digests are compared with none to so many rotors out.
     pub const MOST_ROTORS_OUT: u32 = 2;
 
-    /// How many setpoints are compared: a hundred thousand, or a `million`; with rotors out, which
-    /// takes longer, a fiftieth of that.
+    /// How many setpoints are compared: twenty thousand, or a `million`; with rotors out, which
+    /// takes longer, two thousand or twenty.
     pub const fn setpoints(million: bool, rotors_out: u32) -> usize {
-        let all_turning = if million { 1_000_000 } else { 100_000 };
-        if rotors_out == 0 {
-            all_turning
-        } else {
-            all_turning / 50
+        match (million, rotors_out) {
+            (false, 0) => 20_000,
+            (true, 0) => 1_000_000,
+            (false, _) => 2_000,
+            (true, _) => 20_000,
         }
     }
 

@@ -100,14 +100,10 @@ fn json(output: &Output) -> serde_json::Value {
     serde_json::from_slice(&output.stdout).unwrap()
 }
 
-/// The folder of real bench files, none of which is part of the project; without it the test says
-/// that it does not run.
-fn bench_data(test: &str) -> Option<PathBuf> {
-    let folder = std::env::var_os("MIXER_BENCH_DATA").map(PathBuf::from);
-    if folder.is_none() {
-        eprintln!("NOT RUN: {test} needs MIXER_BENCH_DATA, the folder of real bench files");
-    }
-    folder
+/// The folder of real bench files, none of which is part of the project. Tests that need it are ignored, and run
+/// where it is: `tests/run`.
+fn bench_data() -> PathBuf {
+    maps::bench_data()
 }
 
 /// Runs with `input` on stdin; it succeeds and says nothing on stderr.

@@ -100,10 +100,9 @@ const PAIRS: [(&str, &str, f64); 7] = [
 
 /// Predicted airframes of real pairs, through the whole mixer, by the quartic of the pair's own map.
 #[test]
+#[ignore = "needs MIXER_BENCH_DATA"]
 fn predicted_airframes_lift_what_is_asked() {
-    let Some(data) = bench_data("predicted_airframes_lift_what_is_asked") else {
-        return;
-    };
+    let data = bench_data();
     let file = |part: &str| {
         let entries = fs::read_dir(data.join("newdexterity"))
             .expect("the folder")

@@ -17,10 +17,9 @@ fn unpacked(data: &std::path::Path, name: &str, into: &std::path::Path) -> Strin
 }
 
 #[test]
+#[ignore = "needs MIXER_BENCH_DATA"]
 fn both_stacks_logs_have_the_scale_of_their_plant() {
-    let Some(data) = bench_data("both_stacks_logs_have_the_scale_of_their_plant") else {
-        return;
-    };
+    let data = bench_data();
     let folder = folder("review");
     let airframe = data.join("logs/x8-log.toml").display().to_string();
     let of = |log: &str, more: &[&str]| {
@@ -83,10 +82,9 @@ fn both_stacks_logs_have_the_scale_of_their_plant() {
 }
 
 #[test]
+#[ignore = "needs MIXER_BENCH_DATA"]
 fn the_airframe_with_the_scale_compiles() {
-    let Some(data) = bench_data("the_airframe_with_the_scale_compiles") else {
-        return;
-    };
+    let data = bench_data();
     let folder = folder("review-scaled");
     let log = unpacked(&data, "ardupilot-x8-yaw.bin", &folder);
     let airframe = data.join("logs/x8-log.toml").display().to_string();

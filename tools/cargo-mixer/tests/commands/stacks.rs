@@ -124,10 +124,9 @@ fn octa_cox() -> Vec<(Vec<i64>, &'static str)> {
 }
 
 #[test]
+#[ignore = "needs MIXER_BENCH_DATA"]
 fn px4_files_give_their_frames() {
-    let Some(data) = bench_data("px4_files_give_their_frames") else {
-        return;
-    };
+    let data = bench_data();
     let folder = folder("px4-data");
     let file = |name: &str| data.join("px4").join(name);
     let (units, _) = import(&folder, &[&file("CONSTRUCTED_octo_cox_qgc.params")], &[]);
@@ -213,10 +212,9 @@ fn is_pair(unit: &Unit, frame: &Json, motors: &Json) -> bool {
 }
 
 #[test]
+#[ignore = "needs MIXER_BENCH_DATA"]
 fn ardupilot_tables_give_their_frames() {
-    let Some(data) = bench_data("ardupilot_tables_give_their_frames") else {
-        return;
-    };
+    let data = bench_data();
     let folder = folder("ardupilot-data");
     let text = fs::read_to_string(data.join("ardupilot/coax_frames.json")).unwrap();
     let table: Json = serde_json::from_str(&text).unwrap();
@@ -290,10 +288,9 @@ fn of_px4(folder: &Path, airframe: &Path, upper: &str) -> Vec<Unit> {
 }
 
 #[test]
+#[ignore = "needs MIXER_BENCH_DATA"]
 fn new_frames_are_those_of_the_stacks_tables() {
-    let Some(data) = bench_data("new_frames_are_those_of_the_stacks_tables") else {
-        return;
-    };
+    let data = bench_data();
     let folder = folder("new-outputs");
     // PX4: place, spin and outputs of every unit are those of its own geometry files.
     let geometry = |names: &[&str]| import(&folder, &[&parameters(&folder, &data, names)], &[]).0;
@@ -389,10 +386,9 @@ fn px4_units_are_those_of_its_formulas() {
 }
 
 #[test]
+#[ignore = "needs MIXER_BENCH_DATA"]
 fn px4_units_are_those_of_its_geometries() {
-    let Some(data) = bench_data("px4_units_are_those_of_its_geometries") else {
-        return;
-    };
+    let data = bench_data();
     let folder = folder("px4-units");
     let airframe = folder.join("airframe.toml");
     for names in [
@@ -433,10 +429,9 @@ fn factors(motor: &Json) -> [f64; 3] {
 /// One unit of ArduPilot's inputs by its own tables: sum over the motors of what it multiplies the
 /// input by and of what the motor gives; and the frame's numbers are found again.
 #[test]
+#[ignore = "needs MIXER_BENCH_DATA"]
 fn ardupilot_units_are_those_of_its_tables() {
-    let Some(data) = bench_data("ardupilot_units_are_those_of_its_tables") else {
-        return;
-    };
+    let data = bench_data();
     let folder = folder("ardupilot-units");
     let text = fs::read_to_string(data.join("ardupilot/coax_frames.json")).unwrap();
     let table: Json = serde_json::from_str(&text).unwrap();

@@ -15,25 +15,27 @@ struct Arguments {
     identify: IdentifyArgs,
 }
 
-/// The maps; `None`, and a line on stderr, where the data is not there.
-pub(crate) fn files(test: &str) -> Option<Vec<PathBuf>> {
-    let maps = named(test, &["map10x10"])?;
-    assert!(maps.len() >= 10, "{} maps", maps.len());
-    Some(maps)
+/// The folder of real bench files.
+pub(crate) fn bench_data() -> PathBuf {
+    let data = std::env::var_os("MIXER_BENCH_DATA").map(PathBuf::from);
+    data.expect("MIXER_BENCH_DATA names the folder of the bench files")
 }
 
-/// The files with one of these words in their name, as [`files`].
-pub(crate) fn named(test: &str, words: &[&str]) -> Option<Vec<PathBuf>> {
-    let Some(data) = std::env::var_os("MIXER_BENCH_DATA").map(PathBuf::from) else {
-        eprintln!("NOT RUN: {test} needs MIXER_BENCH_DATA");
-        return None;
-    };
-    let folder = data.join("newdexterity");
+/// The maps.
+pub(crate) fn files() -> Vec<PathBuf> {
+    let maps = named(&["map10x10"]);
+    assert!(maps.len() >= 10, "{} maps", maps.len());
+    maps
+}
+
+/// The files with one of these words in their name.
+pub(crate) fn named(words: &[&str]) -> Vec<PathBuf> {
+    let folder = bench_data().join("newdexterity");
     let entries = std::fs::read_dir(&folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
     let mut files: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
     files.retain(|path| words.iter().any(|word| path.to_string_lossy().contains(word)));
     files.sort();
-    Some(files)
+    files
 }
 
 /// What `cargo mixer identify MAP --basis BASIS` finds.

@@ -61,10 +61,9 @@ const CORRUPT: &str = "data2021_08_17_10_13_04";
 const REPEAT: &str = "data2021_08_17_11_11_55";
 
 #[test]
+#[ignore = "needs MIXER_BENCH_DATA"]
 fn eight_terms_agree_with_the_independent_fit() {
-    let Some(data) = bench_data("eight_terms_agree_with_the_independent_fit") else {
-        return;
-    };
+    let data = bench_data();
     let text = std::fs::read_to_string(data.join("newdexterity/reference_fit.json")).expect("the reference");
     let reference: serde_json::Value = serde_json::from_str(&text).expect("JSON");
     let (name, reference) = reference
@@ -107,10 +106,9 @@ fn eight_terms_agree_with_the_independent_fit() {
 }
 
 #[test]
+#[ignore = "needs MIXER_BENCH_DATA"]
 fn every_map_is_identified() {
-    let Some(data) = bench_data("every_map_is_identified") else {
-        return;
-    };
+    let data = bench_data();
     for path in files(&data.join("newdexterity"), "map10x10") {
         let robust = path.to_string_lossy().contains(CORRUPT);
         let found = fitted(&path, None, robust);
@@ -169,10 +167,9 @@ fn every_map_is_identified() {
 }
 
 #[test]
+#[ignore = "needs MIXER_BENCH_DATA"]
 fn nine_terms_more_than_halve_the_error_of_large_full_range_maps() {
-    let Some(data) = bench_data("nine_terms_more_than_halve_the_error_of_large_full_range_maps") else {
-        return;
-    };
+    let data = bench_data();
     for path in files(&data.join("newdexterity"), "full_range") {
         if path.to_string_lossy().contains(CORRUPT) {
             continue;
@@ -200,10 +197,9 @@ fn nine_terms_more_than_halve_the_error_of_large_full_range_maps() {
 }
 
 #[test]
+#[ignore = "needs MIXER_BENCH_DATA"]
 fn the_corrupt_rows_are_named_and_the_fit_without_them_is_the_repeats() {
-    let Some(data) = bench_data("the_corrupt_rows_are_named_and_the_fit_without_them_is_the_repeats") else {
-        return;
-    };
+    let data = bench_data();
     let path = coaxial(&data, CORRUPT);
     for basis in [None, Some(Basis::Biquadratic), Some(Basis::Cubic)] {
         let plain = pair(&path, basis, false);
@@ -246,10 +242,9 @@ fn the_corrupt_rows_are_named_and_the_fit_without_them_is_the_repeats() {
 }
 
 #[test]
+#[ignore = "needs MIXER_BENCH_DATA"]
 fn exponents_of_the_pairs_at_two_voltages() {
-    let Some(data) = bench_data("exponents_of_the_pairs_at_two_voltages") else {
-        return;
-    };
+    let data = bench_data();
     let folder = data.join("strawson");
     let mut medians = Vec::new();
     for name in ["a1", "h6"] {
@@ -292,10 +287,9 @@ fn exponents_of_the_pairs_at_two_voltages() {
 }
 
 #[test]
+#[ignore = "needs MIXER_BENCH_DATA"]
 fn files_that_cannot_serve_are_refused() {
-    let Some(data) = bench_data("files_that_cannot_serve_are_refused") else {
-        return;
-    };
+    let data = bench_data();
     let cases = [
         ("aerostack2", "steps", "confounded with throttle"),
         ("esc_test", "Log_", "is empty in all 4814 rows"),
@@ -317,10 +311,9 @@ fn files_that_cannot_serve_are_refused() {
 }
 
 #[test]
+#[ignore = "needs MIXER_BENCH_DATA"]
 fn rotor_speeds_mapped_by_hand_are_still_one_line() {
-    let Some(data) = bench_data("rotor_speeds_mapped_by_hand_are_still_one_line") else {
-        return;
-    };
+    let data = bench_data();
     let mut settings = settings(None);
     let roles = [
         ("upper", "RPM"),
@@ -379,10 +372,9 @@ fn left_out(path: &Path, basis: Basis, count: usize) -> Option<[f64; 2]> {
 }
 
 #[test]
+#[ignore = "needs MIXER_BENCH_DATA"]
 fn five_levels_suffice_as_the_page_says() {
-    let Some(data) = bench_data("five_levels_suffice_as_the_page_says") else {
-        return;
-    };
+    let data = bench_data();
     let maps = full_range_maps(&data);
     let mut text = String::from("levels,basis,thrust_percent,torque_percent\n");
     let mut cubic = Vec::new();
@@ -408,10 +400,9 @@ fn five_levels_suffice_as_the_page_says() {
 }
 
 #[test]
+#[ignore = "needs MIXER_BENCH_DATA"]
 fn torque_of_least_power_saves_on_every_full_range_map() {
-    let Some(data) = bench_data("torque_of_least_power_saves_on_every_full_range_map") else {
-        return;
-    };
+    let data = bench_data();
     let maps = full_range_maps(&data);
     let mut savings = Vec::new();
     for path in &maps {
@@ -446,10 +437,9 @@ fn torque_of_least_power_saves_on_every_full_range_map() {
 }
 
 #[test]
+#[ignore = "needs MIXER_BENCH_DATA"]
 fn single_rotors_are_described_by_three_terms() {
-    let Some(data) = bench_data("single_rotors_are_described_by_three_terms") else {
-        return;
-    };
+    let data = bench_data();
     let coaxial = |part: &str| coaxial(&data, part);
     // The upper and the lower rotor's runs, with a full-range map of the same pair and with one
     // from 0.40, where there is one.

@@ -165,12 +165,11 @@ fn sixteen_thousand_rows_are_read_in_well_under_a_second() {
 
 /// The run that docs/bench.md explains. `tests/run --stage bench-data` writes it.
 #[test]
+#[ignore = "needs MIXER_BENCH_DATA"]
 fn the_report_of_the_documents_is_that_of_the_bench() {
     const FILE: &str =
         "data2021_08_17_23_41_12_16p2in_prop_400kv_22V_MN4014_T_motor_map10x10_full_range_zD_025.csv";
-    let Some(data) = bench_data("the_report_of_the_documents_is_that_of_the_bench") else {
-        return;
-    };
+    let data = bench_data();
     let arguments = ["--voltage-exponent", "1.75", "--cells", "6"];
     let output = run(&data.join("newdexterity"), &[&[FILE][..], &arguments].concat());
     assert!(output.status.success(), "{}", text(&output.stderr));

@@ -74,11 +74,10 @@ fn saving_percent([with, without]: [f64; 2]) -> f64 {
 
 /// Level from 0.3 to 0.7 of full thrust, and over drawn requests about these.
 #[test]
+#[ignore = "needs MIXER_BENCH_DATA"]
 fn the_mixer_saves_what_is_identified() {
     const BRISK: [f64; 2] = [0.05, 0.1];
-    let Some(data) = bench_data("the_mixer_saves_what_is_identified") else {
-        return;
-    };
+    let data = bench_data();
     let (mut level, mut brisk) = (Vec::new(), [Vec::new(), Vec::new()]);
     for path in full_range_maps(&data) {
         let x8 = X8::of(&path);
@@ -210,15 +209,14 @@ fn units(flights: &[Vec<Row>]) -> [f64; 4] {
 /// the maps on an X8 frame. Torques are as the flight's in normalised setpoints. The mean thrust in
 /// the air is 0.3 to 0.7 of full thrust, as when level.
 #[test]
+#[ignore = "needs MIXER_BENCH_DATA"]
 fn the_mixer_saves_over_logged_flights() {
     const FLIGHTS: [(&str, &str); 3] = [
         ("2024-06-13 11:56", "log_20240613_115633.csv"),
         ("2024-06-21 10:38", "log_20240621_103807.csv"),
         ("2024-06-13 12:18", "log_20240613_121802.csv"),
     ];
-    let Some(data) = bench_data("the_mixer_saves_over_logged_flights") else {
-        return;
-    };
+    let data = bench_data();
     let logs = FLIGHTS.map(|(_, name)| rows(&data.join("acsl").join(name)));
     let units = units(&logs);
     let frames: Vec<X8> = full_range_maps(&data).iter().map(|map| X8::of(map)).collect();

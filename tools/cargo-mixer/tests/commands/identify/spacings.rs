@@ -33,10 +33,9 @@ fn coefficients(file: &Path) -> [Vec<f64>; 2] {
 }
 
 #[test]
+#[ignore = "needs MIXER_BENCH_DATA"]
 fn a_map_between_two_spacings_is_interpolated() {
-    let Some(data) = bench_data("a_map_between_two_spacings_is_interpolated") else {
-        return;
-    };
+    let data = bench_data();
     let [near, between, far] = [NEAR, BETWEEN, FAR].map(|(part, _)| coefficients(&coaxial(&data, part)));
     let weight = (BETWEEN.1 - NEAR.1) / (FAR.1 - NEAR.1);
     let mixed: [Vec<f64>; 2] = [0, 1].map(|k| {

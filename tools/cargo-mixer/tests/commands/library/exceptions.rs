@@ -7,12 +7,15 @@ use std::process::Command;
 use super::program::{Golden, source};
 use super::{Folder, library, root, run};
 
-/// Setpoints per airframe, over its airmodes.
-const SETPOINTS: usize = 500_000;
+/// Setpoints per airframe and airmode.
+const SETPOINTS: usize = 40_000;
 
 const AIRMODES: [&str; 3] = ["disabled", "roll-pitch", "roll-pitch-yaw"];
 
-/// An airframe's file with another airmode, and another name.
+/// Frames in every airmode: a closed form of four and of three units, and none. The others are in the first.
+const FRAMES: [&str; 3] = ["isae-x8", "px4-y6", "px4-x12"];
+
+/// An airframe's file with this airmode, and another name.
 fn with_airmode(text: &str, name: &str, airmode: &str) -> String {
     let lines = text.lines().filter(|line| !line.starts_with("airmode"));
     let mut text: String = lines.flat_map(|line| [line, "\n"]).collect();
@@ -25,8 +28,8 @@ fn with_airmode(text: &str, name: &str, airmode: &str) -> String {
         .replacen(&quoted(name), &quoted(&format!("{name}-{airmode}")), 1)
 }
 
-/// Mixes in every airframe and airmode, with all rotors and with some out: nothing is trapped, and no
-/// division is by a vector.
+/// Mixes in every airframe, with all rotors and with some out: nothing is trapped, and no division is by a
+/// vector.
 #[test]
 fn no_mix_raises_an_exception() {
     let folder = Folder::new("exceptions");
@@ -34,7 +37,11 @@ fn no_mix_raises_an_exception() {
     for module in Golden::new().modules {
         let name = module.replace('_', "-");
         let text = fs::read_to_string(root().join(format!("airframes/{name}.toml"))).unwrap();
-        for airmode in AIRMODES {
+        let airmodes = match FRAMES.contains(&name.as_str()) {
+            true => &AIRMODES[..],
+            false => &AIRMODES[..1],
+        };
+        for airmode in airmodes {
             let file = folder.join(&format!("{name}-{airmode}.toml"));
             fs::write(&file, with_airmode(&text, &name, airmode)).unwrap();
             files.push(file.display().to_string());
@@ -61,8 +68,7 @@ fn no_mix_raises_an_exception() {
         .arg(source("exceptions.c"))
         .args(&archives);
     run(compiler.args(["-lm", "-o"]).arg(&program));
-    let airmodes = AIRMODES.len();
-    let output = run(Command::new(&program).arg((SETPOINTS / airmodes).to_string()));
+    let output = run(Command::new(&program).arg(SETPOINTS.to_string()));
     let text = String::from_utf8(output.stdout).unwrap();
     assert_eq!(text.matches(": no exception\n").count(), files.len(), "{text}");
 

@@ -260,7 +260,7 @@ fn assert_bits_without_floating_point(target: &str, processor: &str, machine: &s
     compiler.arg(format!("-T{}", program::source("board.ld").display()));
     run(&mut compiler);
     let digest = String::from_utf8(output.stdout).unwrap();
-    assert!(digest.starts_with("1000000 pairs: "), "{digest}");
+    assert!(digest.starts_with("200000 pairs: "), "{digest}");
     assert_eq!(program::qemu_on(machine, &image), digest);
 }
 
@@ -281,21 +281,11 @@ fn a_cortex_m0_has_the_bits() {
     assert_bits_without_floating_point("thumbv6m-none-eabi", "-mcpu=cortex-m0", "microbit", &[stack]);
 }
 
-/// A companion computer: both self-tests in QEMU's user mode, where a cross compiler, its C library
-/// and QEMU for it are there.
+/// A companion computer: both self-tests in QEMU's user mode.
 #[test]
+#[ignore = "needs aarch64-linux-gnu-gcc, its C library and qemu-aarch64"]
 fn an_aarch64_computer_has_the_bits() {
     let tools = ["aarch64-linux-gnu-gcc", "qemu-aarch64"];
-    let is_there = |tool: &&str| Command::new(tool).arg("--version").output().is_ok();
-    if let Some(missing) = tools.iter().find(|tool| !is_there(tool)) {
-        eprintln!("NOT RUN: an_aarch64_computer_has_the_bits needs {missing}");
-        return;
-    }
-    let libc = run(Command::new(tools[0]).arg("-print-file-name=libc.a"));
-    if !String::from_utf8_lossy(&libc.stdout).contains('/') {
-        eprintln!("NOT RUN: an_aarch64_computer_has_the_bits needs libc6-dev-arm64-cross");
-        return;
-    }
     let folder = Folder::new("aarch64");
     let target = "aarch64-unknown-linux-gnu";
     run(&mut library(
