@@ -37,7 +37,9 @@ addEventListener("DOMContentLoaded", () => {
 
 @pytest.fixture(scope="session")
 def site():
-    """The folder of the page."""
+    """The folder of the page: that of `MIXER_PAGE`, which `tests/run` has made for all workers, or one made here."""
+    if made := os.environ.get("MIXER_PAGE"):
+        return Path(made)
     folder = TARGET / "web-tests"
     subprocess.run(["cargo", "page", "-o", folder], cwd=ROOT, check=True)
     return folder
