@@ -22,7 +22,7 @@ fn built(prefix: &str, name: &str, suffix: &str) -> PathBuf {
         .unwrap_or_else(|| panic!("no {name} in {}", folder.display()))
 }
 
-/// What the compiler says of a case, without its last lines, which count the errors.
+/// What the compiler says of a case, without blanks at the ends of lines and its last lines, which count the errors.
 fn refusal(case: &Path) -> String {
     let package = Path::new(env!("CARGO_MANIFEST_DIR"));
     let macros = built(env::consts::DLL_PREFIX, "mixer_macros", env::consts::DLL_SUFFIX);
@@ -50,7 +50,10 @@ fn refusal(case: &Path) -> String {
     let said = String::from_utf8(output.stderr).unwrap();
     assert!(!output.status.success(), "{} compiles:\n{said}", case.display());
     let errors = said.split("\nerror: aborting due to").next().unwrap_or_default();
-    errors.to_owned()
+    errors
+        .lines()
+        .map(|line| line.trim_end().to_owned() + "\n")
+        .collect()
 }
 
 #[test]
