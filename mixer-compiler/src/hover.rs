@@ -54,13 +54,17 @@ impl Search {
 pub struct HoverAt {
     /// The voltage, V.
     pub voltage_v: Option<f64>,
-    /// Mean throttle of the upper rotors; `None` where the weight is not carried.
-    pub upper_throttle: Option<f64>,
-    /// Mean throttle of the lower rotors, likewise.
-    pub lower_throttle: Option<f64>,
-    /// Mean throttles `[upper, lower]` where the pair gives one standard deviation of
-    /// `[pair.uncertainty]` more and less thrust than its model; `None` without that table, or where
-    /// the weight is then not carried.
+    /// Least and greatest throttle of the upper rotors; `None` where the weight is not carried.
+    pub upper_throttle: Option<[f64; 2]>,
+    /// The outputs that have them.
+    pub upper_outputs: Option<[usize; 2]>,
+    /// Least and greatest throttle of the lower rotors, likewise.
+    pub lower_throttle: Option<[f64; 2]>,
+    /// The outputs that have them.
+    pub lower_outputs: Option<[usize; 2]>,
+    /// Least throttles `[upper, lower]` where the pair gives one standard deviation of
+    /// `[pair.uncertainty]` more thrust than its model, and greatest ones where it gives as much less; `None`
+    /// without that table, or where the weight is then not carried.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub throttle_band: Option<[[f64; 2]; 2]>,
     /// Largest torques `[negative, positive]` about the served axes that are delivered with the
@@ -144,10 +148,49 @@ fn reserve(compiled: &Compiled) -> Option<Diagnostic> {
     })
 }
 
-/// Warnings of hover: a yaw reserve that a rotor out leaves no yaw for, and an axis that is left less than the pair may be
-/// off by.
-pub(crate) fn warnings(compiled: &Compiled) -> Vec<Diagnostic> {
-    reserve(compiled).into_iter().chain(margins(compiled)).collect()
+/// Warnings of hover: a yaw reserve that a rotor out leaves no yaw for, an axis that is left less than the pair may be
+/// off by, and a rotor that is next to a limit, where those `told` do not say so by the weight.
+pub(crate) fn warnings(compiled: &Compiled, told: &[Diagnostic]) -> Vec<Diagnostic> {
+    const BY_WEIGHT: [Code; 4] = [
+        Code::TooHeavy,
+        Code::FloatsAtIdle,
+        Code::HoversHigh,
+        Code::TooLight,
+    ];
+    let is_told = told.iter().any(|warning| BY_WEIGHT.contains(&warning.code));
+    let warnings = reserve(compiled).into_iter().chain(margins(compiled));
+    warnings.chain(limits(compiled).filter(|_| !is_told)).collect()
+}
+
+/// Share of the throttle's range within which a rotor is next to its end.
+const NEXT_TO: f64 = 0.05;
+
+/// A rotor that hovers next to idle or to the largest throttle, at the reference voltage.
+fn limits(compiled: &Compiled) -> Option<Diagnostic> {
+    let airframe = &compiled.airframe;
+    let (min, max) = (airframe.throttle.min, airframe.throttle.max);
+    let reference_v = airframe.voltage.as_ref().map(|voltage| voltage.reference);
+    let at = HoverAt::new(compiled, airframe.weight_n()?, reference_v);
+    let layers = [
+        (at.upper_throttle?, at.upper_outputs?),
+        (at.lower_throttle?, at.lower_outputs?),
+    ];
+    let room = NEXT_TO * (max - min);
+    let ends = layers
+        .into_iter()
+        .flat_map(|([least, greatest], [lowest, highest])| {
+            let idle = (least - min < room).then_some(("idle", min, least, lowest));
+            let full = (max - greatest < room).then_some(("throttle.max", max, greatest, highest));
+            [full, idle]
+        });
+    let (name, limit, throttle, output) = ends.flatten().next()?;
+    Some(airframe.diagnostic(
+        Code::HoverAtLimit,
+        "vehicle.mass_kg",
+        format!("in hover output {output} is at a throttle of {throttle:.3}, next to {name}, {limit}"),
+        "little is left of roll, pitch or yaw one way",
+        "move the units about the centre of gravity (`check` prints every layer's throttles), or fly with another mass",
+    ))
 }
 
 /// Hover leaves less of an axis than the pair may be off by, at the lowest voltage.
@@ -197,31 +240,31 @@ impl HoverAt {
             return HoverAt {
                 voltage_v,
                 upper_throttle: None,
+                upper_outputs: None,
                 lower_throttle: None,
+                lower_outputs: None,
                 throttle_band: None,
                 margins: Vec::new(),
                 rotor_out: Vec::new(),
             };
         };
-        let units = &compiled.airframe.units;
-        let mean = |throttles: &[f32], channels: &mut dyn Iterator<Item = usize>| {
-            let sum: f64 = channels
-                .filter_map(|channel| throttles.get(channel))
-                .map(|&throttle| f64::from(throttle))
-                .sum();
-            sum / units.len() as f64
+        // Outputs of the upper (0) and of the lower (1) rotors that have the least and the greatest throttle.
+        let extremes = |throttles: &[f32]| {
+            [0, 1].map(|layer| {
+                let outputs = || tables.units.iter().map(|unit| usize::from(unit.channels[layer]));
+                let by_throttle = |a: &usize, b: &usize| throttles[*a].total_cmp(&throttles[*b]);
+                [outputs().min_by(by_throttle), outputs().max_by(by_throttle)].map(Option::unwrap_or_default)
+            })
         };
-        let means = |throttles: &[f32]| {
-            [
-                mean(throttles, &mut units.iter().map(|unit| unit.upper_channel)),
-                mean(throttles, &mut units.iter().map(|unit| unit.lower_channel)),
-            ]
-        };
-        let [upper, lower] = means(&throttles);
+        let outputs = extremes(&throttles);
+        let [upper, lower] = outputs.map(|of| of.map(|output| f64::from(throttles[output])));
         let band = |axis: Axis| band(compiled, axis, voltage_v);
         let throttle_band = band(Axis::Thrust).and_then(|off| {
-            let at = |thrust: f64| Some(means(&mix([0.0, 0.0, 0.0, thrust])?));
-            Some([at(weight_n - off)?, at(weight_n + off)?])
+            let at = |thrust: f64, end: usize| {
+                let throttles = mix([0.0, 0.0, 0.0, thrust])?;
+                Some(extremes(&throttles).map(|of| f64::from(throttles[of[end]])))
+            };
+            Some([at(weight_n - off, 0)?, at(weight_n + off, 1)?])
         });
         let margins = served.map(|axis| {
             let largest = largest_torque(compiled, axis);
@@ -242,7 +285,9 @@ impl HoverAt {
         HoverAt {
             voltage_v,
             upper_throttle: Some(upper),
+            upper_outputs: Some(outputs[0]),
             lower_throttle: Some(lower),
+            lower_outputs: Some(outputs[1]),
             throttle_band,
             margins: margins.collect(),
             rotor_out: RotorOut::of(compiled, weight_n, voltage_v),

@@ -84,7 +84,8 @@ fn compile_airframe(source: &Source, airframe: Airframe) -> Result<Compiled, Vec
 /// Warnings of a compiled airframe: values that compile and are probably mistakes.
 pub fn lint(compiled: &Compiled) -> Diagnostics {
     let mut warnings = plausible::warnings(compiled);
-    warnings.extend(hover::warnings(compiled));
+    let of_hover = hover::warnings(compiled, &warnings);
+    warnings.extend(of_hover);
     warnings.extend(power::warnings(compiled));
     Diagnostics::new(compiled.source.clone(), warnings)
 }

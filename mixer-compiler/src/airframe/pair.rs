@@ -11,6 +11,9 @@ use super::uncertainty::{self, Uncertainty};
 use crate::spec::keys::{Key, Kind, keys};
 use crate::spec::{Fields, Numbers};
 
+/// Words of `stronger`: whether it is the lower rotor.
+const STRONGER_WORDS: [&str; 2] = ["upper", "lower"];
+
 /// Terms of the smallest and of the largest basis.
 const TERMS: [usize; 2] = [8, 14];
 
@@ -23,6 +26,8 @@ keys! { TABLE = "[pair]":
         "Coefficients of the total torque, N m, positive where the lower rotor outweighs the upper.".required();
     UPPER_SPIN "upper_spin" = "\"cw\"", Kind::Word(&Spin::WORDS),
         "How the upper rotor turned on the bench, seen from above.".required();
+    STRONGER "stronger" = "\"lower\"", Kind::Word(&STRONGER_WORDS),
+        "The rotor of more pitch, KV or diameter, where they differ: a lower rotor that is the stronger one looks like rotors that were exchanged (MIX301).";
     LOWER_OUT "lower_out" = "", Kind::Table(&rotor_alone::LOWER_OUT),
         "What the upper rotor gives alone, the lower one at rest: used while the lower one is out.";
     UPPER_OUT "upper_out" = "", Kind::Table(&rotor_alone::UPPER_OUT),
@@ -86,6 +91,8 @@ pub struct Pair {
     pub torque_nm: Vec<f64>,
     /// Spin of the upper rotor on the bench.
     pub upper_spin: Spin,
+    /// Whether the lower rotor is the stronger one, as the file says.
+    pub lower_is_stronger: bool,
     /// The upper rotor alone; `None` where the polynomials at l = 0 stand for it.
     pub lower_out: Option<RotorAlone>,
     /// The lower rotor alone; `None` where the polynomials at u = 0 stand for it.
@@ -104,6 +111,7 @@ pub(super) fn read(table: &mut Fields<'_, '_>, throttle: Option<&Throttle>) -> (
     let basis = table.word(&BASIS, &Basis::ALL);
     let [thrust_n, torque_nm] = [&THRUST_N, &TORQUE_NM].map(|key| coefficients(table, key, basis));
     let upper_spin = table.word(&UPPER_SPIN, &Spin::ALL);
+    let lower_is_stronger = table.word(&STRONGER, &[false, true]);
     let lower_out = table.table(&LOWER_OUT, |table| rotor_alone::read(table, -1.0, throttle));
     let upper_out = table.table(&UPPER_OUT, |table| rotor_alone::read(table, 1.0, throttle));
     let power = table.table(&POWER, |table| power::read(table, throttle));
@@ -116,6 +124,7 @@ pub(super) fn read(table: &mut Fields<'_, '_>, throttle: Option<&Throttle>) -> (
             thrust_n: thrust_n?,
             torque_nm: torque_nm?,
             upper_spin: upper_spin?,
+            lower_is_stronger: lower_is_stronger.unwrap_or_default(),
             lower_out: lower_out.flatten(),
             upper_out: upper_out.flatten(),
             power: power.flatten(),

@@ -182,6 +182,8 @@ catalogue! {
     MarginBelowBand = 343,
     /// A vehicle of far less weight than its rotors lift.
     TooLight = 344,
+    /// A rotor that hovers next to a limit of its throttle.
+    HoverAtLimit = 345,
 }
 
 impl Code {

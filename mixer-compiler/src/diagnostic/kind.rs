@@ -1,8 +1,19 @@
 //! Files that were meant for something else, by their content.
 
+/// The beginning of a zip archive, which documents of offices are, too.
+const ARCHIVE: &[u8] = b"PK\x03\x04";
+
+/// Names in such an archive, and what it is.
+const DOCUMENTS: [(&[u8], &str); 4] = [
+    (b"xl/", "a workbook (.xlsx, .ods)"),
+    (b"opendocument.spreadsheet", "a workbook (.xlsx, .ods)"),
+    (b"word/", "a text document (.docx, .odt)"),
+    (b"opendocument.text", "a text document (.docx, .odt)"),
+];
+
 /// Beginnings of files, and what these are.
 const BEGINNINGS: [(&[u8], &str); 9] = [
-    (b"PK\x03\x04", "a workbook (.xlsx, .ods)"),
+    (ARCHIVE, "a packed file (unpack it first)"),
     (b"\xd0\xcf\x11\xe0", "a workbook (.xls)"),
     (b"%PDF", "a PDF document"),
     (b"{", "JSON"),
@@ -10,7 +21,7 @@ const BEGINNINGS: [(&[u8], &str); 9] = [
     (b"<", "a page of HTML or XML"),
     (b"ULog", "a flight log, which cargo mixer review reads"),
     (b"\xa3\x95", "a flight log, which cargo mixer review reads"),
-    (b"\xfd7zXZ", "a packed file: unpack it first"),
+    (b"\xfd7zXZ", "a packed file (unpack it first)"),
 ];
 
 /// Words of parameter files that say which rotors there are.
@@ -20,7 +31,11 @@ pub const PARAMETERS: [&str; 3] = ["CA_ROTOR", "FRAME_CLASS", "mmix"];
 #[must_use]
 pub fn foreign(bytes: &[u8]) -> Option<&'static str> {
     let bytes = bytes.trim_ascii_start();
-    let known = BEGINNINGS.iter().find(|(begin, _)| bytes.starts_with(begin));
+    let holds = |name: &[u8]| bytes.windows(name.len()).any(|part| part == name);
+    let document = DOCUMENTS
+        .iter()
+        .find(|(name, _)| bytes.starts_with(ARCHIVE) && holds(name));
+    let known = document.or_else(|| BEGINNINGS.iter().find(|(begin, _)| bytes.starts_with(begin)));
     known.map(|(_, what)| *what)
 }
 

@@ -51,16 +51,16 @@ pub(super) fn order(facts: &Facts<'_>) -> Vec<Rule> {
             "expected \"cw\"",
             "write upper_spin = \"cw\" under [pair], whichever way the bench turned; those of the units are the real ones",
         ),
-        rule("torque_nm", is_refused || !is_above)
+        rule("torque_nm", is_refused || !is_above || facts.airframe.pair.lower_is_stronger)
             .says(
                 format!(
                     "the lower rotor takes more torque than the upper one at equal throttles: the mean torque over the box is \
                      {:+.1} % of the largest",
                     100.0 * mean
                 ),
-                "expected less of the rotor in the wake",
-                "the rotors look exchanged: run identify again with --swap, or exchange u and l in both polynomials and \
-                 negate torque_nm",
+                "expected less of the rotor in the wake, where both are alike",
+                "either the rotors are exchanged: run identify again with --swap; or the lower one is the stronger (more pitch, KV or \
+                 diameter): write stronger = \"lower\" under [pair]",
             )
             .unless_told(&[Code::RotorsExchanged]),
     ]

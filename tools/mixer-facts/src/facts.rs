@@ -195,6 +195,14 @@ fn gives(list: &mut List, compiled: &Compiled) {
     }
 }
 
+/// Least and greatest throttle of a layer with their outputs; one number where they are alike.
+fn layer([least, greatest]: [f64; 2], [lowest, highest]: [usize; 2]) -> String {
+    match [least, greatest].map(|throttle| format!("{throttle:.3}")) {
+        [low, high] if low == high => low,
+        [low, high] => format!("{low} (output {lowest}) to {high} (output {highest})"),
+    }
+}
+
 /// The vehicle in hover.
 fn hover(list: &mut List, compiled: &Compiled) {
     let hover = Hover::new(compiled);
@@ -214,7 +222,12 @@ fn hover(list: &mut List, compiled: &Compiled) {
         .in_verdict();
     for (at, name) in hover.at.iter().rev().zip(["hover", "hover, lowest V"]) {
         let volts = or_nothing(at.voltage_v, |volts| format!(" at {volts:?} V"));
-        let (Some(upper), Some(lower)) = (at.upper_throttle, at.lower_throttle) else {
+        let layers = [
+            (at.upper_throttle, at.upper_outputs),
+            (at.lower_throttle, at.lower_outputs),
+        ];
+        let [Some(upper), Some(lower)] = layers.map(|(throttle, outputs)| Some(layer(throttle?, outputs?)))
+        else {
             let words = format!("the weight is not carried{volts}");
             list.say(name, "", "", words).in_verdict();
             continue;
@@ -231,7 +244,7 @@ fn hover(list: &mut List, compiled: &Compiled) {
             format!("; by [pair.uncertainty] {low_u:.3} to {u:.3} upper, {low_l:.3} to {l:.3} lower")
         });
         let words = format!(" throttle of upper, lower rotors{volts}{left}{band}");
-        list.say(name, format!("{upper:.3}, {lower:.3}"), "", words)
+        list.say(name, format!("{upper}, {lower}"), "", words)
             .in_verdict();
     }
     let Some(at) = hover.at.last().filter(|at| !at.rotor_out.is_empty()) else {
@@ -410,7 +423,7 @@ fn ceiling(list: &mut List, air: &Air) {
         None => "density is not corrected for: no [air]".to_owned(),
     };
     let words = format!(
-        ", thrust over weight {LEAST_THRUST_OVER_WEIGHT}; at {altitudes} m it is {over_weight}, hover throttle {throttle}; {corrected}"
+        ", thrust over weight {LEAST_THRUST_OVER_WEIGHT}; at {altitudes} m it is {over_weight}, hover throttle {throttle} in the mean of all rotors; {corrected}"
     );
     list.say("ceiling", ceiling, "m", words).in_verdict();
 }

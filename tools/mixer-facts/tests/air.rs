@@ -112,7 +112,7 @@ fn the_verdict_has_a_line() {
     assert_eq!(
         line(x8(AIR), "ceiling"),
         "7200 m, thrust over weight 1.3; at 0, 1500, 3000 m it is 2.29, 2.05, 1.83, hover throttle 0.574, 0.611, \
-         0.651; density is corrected for from 0.75 to 1.4 kg/m3"
+         0.651 in the mean of all rotors; density is corrected for from 0.75 to 1.4 kg/m3"
     );
     assert!(line(x8(""), "ceiling").ends_with("; density is not corrected for: no [air]"));
     let paper = paper("thrust_exponent = 1.75");

@@ -26,7 +26,9 @@ fn hover_is_that_of_the_pair() {
     let pair = &compiled.pair;
     let voltage = compiled.airframe.voltage.as_ref().unwrap();
     for at in &hover.at {
-        let [f, q] = pair.efforts([at.upper_throttle.unwrap(), at.lower_throttle.unwrap()]);
+        let [upper, lower] = [at.upper_throttle, at.lower_throttle].map(Option::unwrap);
+        assert!(upper[1] - upper[0] < 1e-6 && lower[1] - lower[0] < 1e-6, "{at:?}");
+        let [f, q] = pair.efforts([upper[0], lower[0]]);
         let volts = at.voltage_v.unwrap();
         let lift = 4.0 * voltage.thrust_factor(volts) * f;
         assert!((lift - hover.weight_n).abs() < 0.04, "{volts} V: {lift} N");
@@ -58,6 +60,38 @@ fn hover_is_that_of_the_pair() {
     }
 }
 
+/// With the centre of gravity 6 cm aft the rear rotors carry more, which no mean shows.
+#[test]
+fn hover_has_the_least_and_the_greatest_throttle_of_a_layer() {
+    let text = include_str!("../../../airframes/isae-x8.toml")
+        .replace("position_m = [0.3182", "position_m = [0.3782");
+    let text =
+        text.replace("position_m = [-0.3182", "position_m = [-0.2582") + "\n[vehicle]\nmass_kg = 3.2\n";
+    let compiled = compile(&Source::new("x8.toml", text)).unwrap_or_else(|faults| panic!("{faults}"));
+    let hover = Hover::new(&compiled).unwrap();
+    let at = hover.at.last().unwrap();
+    let (throttles, ..) = compiled
+        .tables
+        .mix(
+            &mixer_rt::Wrench {
+                thrust_n: hover.weight_n as f32,
+                ..Default::default()
+            },
+            14.8,
+        )
+        .unwrap();
+    for (throttle, outputs) in [
+        (at.upper_throttle, at.upper_outputs),
+        (at.lower_throttle, at.lower_outputs),
+    ] {
+        let (throttle, outputs) = (throttle.unwrap(), outputs.unwrap());
+        assert_eq!(throttle, outputs.map(|output| f64::from(throttles[output])));
+        assert!(throttle[1] - throttle[0] > 0.1, "{at:?}");
+    }
+    let text = Checked::new(compiled).verdict();
+    assert!(text.contains(" (output ") && text.contains("hover"), "{text}");
+}
+
 #[test]
 fn hover_is_only_there_with_a_mass() {
     let compiled = x8("");
@@ -66,7 +100,7 @@ fn hover_is_only_there_with_a_mass() {
     assert!(json["hover"].is_null());
     let json = Checked::new(x8("[vehicle]\nmass_kg = 9\n")).json(());
     assert!(json["hover"]["at"][0]["upper_throttle"].is_null(), "{json}");
-    assert!(json["hover"]["at"][1]["upper_throttle"].is_number(), "{json}");
+    assert!(json["hover"]["at"][1]["upper_throttle"][1].is_number(), "{json}");
 }
 
 /// No name and no key is said twice, and facts that one airframe lacks move none of the others'.

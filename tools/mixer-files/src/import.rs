@@ -5,6 +5,7 @@
 //!   -> rotors: channel, place, axis, spin                              px4.rs, ardupilot.rs, betaflight.rs
 //!   -> what the outputs send, and to which motor                       outputs.rs
 //!   -> units: two rotors in one place, which is on top                 pairs.rs
+//!   -> what is said of single rotors and not used                      unused.rs
 //!   -> the airframe file, with what the parameters do not say named    text.rs
 //! ```
 
@@ -16,6 +17,7 @@ mod parameters;
 mod px4;
 mod rotors;
 mod text;
+mod unused;
 
 use mixer_compiler::airframe::Airframe;
 use mixer_compiler::model::PairMap;
@@ -102,6 +104,7 @@ pub fn stated(file: &Source) -> Result<Stated, String> {
 pub fn import(file: &Source, pair: Option<&Source>, options: &Options<'_>) -> Result<Import, String> {
     let mut imported = read(file, options.arm_m)?;
     let units = pairs::pair(&imported.rotors, options.upper)?;
+    imported.notes.extend(unused::told(&imported.rotors, &units)?);
     let pair = pair
         .map(|pair| PairFile::read(&pair.name, &pair.text))
         .transpose()?;
@@ -150,6 +153,9 @@ fn read(file: &Source, arm_m: Option<f64>) -> Result<Imported, String> {
         ));
     };
     imported.notes.extend(outputs::order(&parameters));
+    for rotor in &mut imported.rotors {
+        rotor.own.pulses_us = outputs::own_pulses(&parameters, rotor.channel);
+    }
     match outputs::pulses(&parameters) {
         Ok(pulses) => imported.pulses = pulses,
         Err(note) => imported.notes.push(note),

@@ -95,6 +95,9 @@ pub struct Bench {
     pub kind: Kind,
     /// Which rotor turns in a run of one, where the header has a throttle for each.
     pub turning: Option<Turning>,
+    /// Whether the user said which columns are the upper and which the lower rotor's.
+    #[serde(skip)]
+    pub sides_by_hand: bool,
     /// Rows of measurements in the file.
     pub rows: usize,
     /// Start and stop rows dropped.
@@ -361,6 +364,7 @@ pub fn prepare(log: Log, how: &Preparation) -> Result<Bench, Refusal> {
         file: name,
         format: columns.format,
         kind: turned.kind,
+        sides_by_hand: columns.sides_by_hand,
         rows,
         start_stop_rows,
         streaming,

@@ -66,6 +66,9 @@ pub fn tables(id: &Identified) -> String {
             ("torque_nm", of(&pair.torque)),
             ("upper_spin", value(pair.upper_spin)),
         ];
+        if pair.lower_is_stronger {
+            entries.push(("stronger", value("lower")));
+        }
         if let Some(uncertainty) = &pair.uncertainty {
             entries.push(("uncertainty", uncertainty.table()));
         }

@@ -140,7 +140,10 @@ fn the_parser_agrees_key_by_key() {
         ),
         format!(
             "name = \"two\"\n{}{layout}{alone}",
-            pair.replace("upper_spin", "bench_options = [\"--swap\"]\nupper_spin")
+            pair.replace(
+                "upper_spin",
+                "bench_options = [\"--swap\"]\nstronger = \"lower\"\nupper_spin"
+            )
         ),
         format!("name = \"three\"\n{}{layout}", with_law(&pair, points)),
         format!(

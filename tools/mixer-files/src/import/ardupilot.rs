@@ -3,7 +3,7 @@
 
 use super::outputs;
 use super::parameters::Parameters;
-use super::rotors::{Imported, Rotor, UPWARD};
+use super::rotors::{Imported, Own, Rotor, UPWARD};
 use crate::params::frames::{COAXIAL_MIXER, LAYER_M, Layer, motors};
 
 /// ArduPilot's defaults.
@@ -59,6 +59,7 @@ pub(super) fn read(parameters: &Parameters, arm: Option<f64>) -> Result<Imported
         position_m: place(arm, motor.angle_deg, motor.layer),
         axis: UPWARD,
         spin: motor.spin,
+        own: Own::NONE,
     });
     let mut notes = vec![format!(
         "arms of {arm} m at equal angles are assumed, and the upper rotors of ArduPilot's table; --upper says otherwise"

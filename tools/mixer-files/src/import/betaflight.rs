@@ -10,7 +10,7 @@ use mixer_compiler::airframe::Spin;
 
 use super::outputs;
 use super::parameters::words;
-use super::rotors::{Imported, Rotor, UPWARD};
+use super::rotors::{Imported, Own, Rotor, UPWARD};
 use crate::params::frames::LAYER_M;
 
 /// Betaflight's coaxial tables (`mixerOctoX8`, `mixerY6`): roll, pitch, yaw; throttle is 1. The
@@ -33,11 +33,14 @@ const SAME_FACTOR: f64 = 0.01;
 /// Share by which squares of arms may differ that are equal.
 const EQUAL_ARMS: f64 = 0.02;
 
+/// Squares of scales below which all arms would lie on one line.
+const LEAST_SQUARE: f64 = 0.01;
+
 /// Weight of one scale for roll and pitch, which decides where equal arms leave them open.
 const ONE_SCALE: f64 = 1e-6;
 
-/// A motor: its place in the text, and its factors of roll, pitch and yaw.
-type Motor = (String, [f64; 3]);
+/// A motor: its place in the text, and its factors of throttle, roll, pitch and yaw.
+type Motor = (String, [f64; 4]);
 
 /// Whether a text is one: by lines that no file of parameters has. PX4's older scripts load a mixer.
 pub(super) fn is_dump(text: &str) -> bool {
@@ -61,7 +64,8 @@ fn motors(source: &Source) -> Result<(Vec<Motor>, bool), String> {
             ["mixer", name] if !name.eq_ignore_ascii_case("custom") => {
                 let known = TABLES.iter().find(|(known, _)| name.eq_ignore_ascii_case(known));
                 let motors = known.map_or(&[][..], |(_, motors)| *motors).iter();
-                table = Some(motors.map(|motor| (place.clone(), *motor)).collect());
+                let factors = motors.map(|[roll, pitch, yaw]| [1.0, *roll, *pitch, *yaw]);
+                table = Some(factors.map(|factors| (place.clone(), factors)).collect());
             }
             ["mmix", "reset"] => motors.clear(),
             ["mmix", ref rest @ ..] => {
@@ -72,7 +76,7 @@ fn motors(source: &Source) -> Result<(Vec<Motor>, bool), String> {
                         if rest.len() == numbers.len() && motor == motors.len() as f64 =>
                     {
                         if throttle > 0.0 {
-                            motors.push((place, [roll, pitch, yaw]));
+                            motors.push((place, [throttle, roll, pitch, yaw]));
                         }
                     }
                     _ => {
@@ -104,19 +108,24 @@ pub(super) fn read(source: &Source, arm: Option<f64>) -> Result<Imported, String
     let arm = outputs::arm(arm, &format!("{file}: the factors of `mmix`"))?;
     let places: Vec<[f64; 2]> = motors
         .iter()
-        .map(|(_, [roll, pitch, _])| [*roll, *pitch])
+        .map(|(_, [_, roll, pitch, _])| [*roll, *pitch])
         .collect();
     let scales = scales(&places).map(|square| arm * square.sqrt());
     let mut rotors = Vec::new();
-    for (channel, (place, [roll, pitch, yaw])) in motors.iter().enumerate() {
-        if *yaw == 0.0 {
+    let is_3d = source
+        .text
+        .lines()
+        .any(|line| words(line)[..] == ["feature", "3D"]);
+    for (channel, (place, [throttle, roll, pitch, yaw])) in motors.iter().enumerate() {
+        let is_same = |other: &[f64; 2]| {
+            (roll - other[0]).abs() < SAME_FACTOR && (pitch - other[1]).abs() < SAME_FACTOR
+        };
+        // A rotor that is alone is told of later.
+        if *yaw == 0.0 && places.iter().filter(|place| is_same(place)).count() > 1 {
             return Err(format!(
                 "{place}: the yaw of motor {channel} is 0: its sign says how the rotor turns"
             ));
         }
-        let is_same = |other: &[f64; 2]| {
-            (roll - other[0]).abs() < SAME_FACTOR && (pitch - other[1]).abs() < SAME_FACTOR
-        };
         let is_lower = places[..channel].iter().any(is_same);
         // To a tenth of a millimetre.
         let [x, y] = [-pitch * scales[1], -roll * scales[0]].map(|x| (x * 1e4).round() / 1e4 + 0.0);
@@ -129,6 +138,12 @@ pub(super) fn read(source: &Source, arm: Option<f64>) -> Result<Imported, String
                 Spin::Cw
             } else {
                 Spin::Ccw
+            },
+            own: Own {
+                thrust: *throttle,
+                yaw: yaw.abs(),
+                is_reversible: is_3d,
+                ..Own::NONE
             },
         });
     }
@@ -160,7 +175,7 @@ fn scales(places: &[[f64; 2]]) -> [f64; 2] {
     let [r, p] = [sum(|[r, _]| *r), sum(|[_, p]| *p)];
     let both = [r * pp - p * rp, p * rr - r * rp].map(|x| x / (rr * pp - rp * rp));
     let is_equal = |[r, p]: &[f64; 2]| (r * both[0] + p * both[1] - 1.0).abs() < EQUAL_ARMS;
-    if both.iter().all(|square| *square > 0.0) && squares.iter().all(is_equal) {
+    if both.iter().all(|square| *square > LEAST_SQUARE) && squares.iter().all(is_equal) {
         return both;
     }
     let longest = squares

@@ -57,6 +57,19 @@ pub(super) fn order(parameters: &Parameters) -> Option<String> {
     })
 }
 
+/// Pulse widths of throttle 0 and 1 of one motor's pin, from 0, us; `None` where they are those of all.
+pub(super) fn own_pulses(parameters: &Parameters, motor: usize) -> Option<[f64; 2]> {
+    let mut banks = BANKS.into_iter().filter(|bank| !bank.2.is_empty());
+    banks.find_map(|bank| {
+        let (pin, _) = motors(bank, parameters)
+            .into_iter()
+            .find(|(_, of)| *of == motor)?;
+        let name = numbered(bank.2, pin);
+        let ends = ["MIN", "MAX"].map(|end| parameters.get(&name.replace("{}", end)));
+        Some([ends[0].unwrap_or(USUAL_US[0]), ends[1].unwrap_or(USUAL_US[1])])
+    })
+}
+
 /// Whether a parameter says that the motors are driven by DShot: ArduPilot's `MOT_PWM_TYPE` of 4 and more,
 /// PX4's `PWM_MAIN_TIMn` of -2 and less.
 pub(super) fn is_dshot(name: &str, value: f64) -> bool {

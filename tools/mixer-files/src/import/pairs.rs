@@ -18,6 +18,18 @@ pub(super) fn pair(rotors: &[Rotor], upper: &[usize]) -> Result<Vec<Unit>, Strin
         let last = rotors.len().max(1) - 1;
         return Err(format!("--upper {channel}: the outputs are 0 to {last}"));
     }
+    let is_alone = |rotor: &&Rotor| {
+        !rotors
+            .iter()
+            .any(|other| other.channel != rotor.channel && is_on_axis(rotor, other))
+    };
+    let alone: Vec<&Rotor> = rotors.iter().filter(is_alone).collect();
+    if let ([first, second], 4) = (&alone[..], rotors.len()) {
+        return Err(format!(
+            "{}: a Y4: rotors {} and {} are alone, and two are a pair. The mixer is for frames whose rotors are all in pairs",
+            first.place, first.channel, second.channel
+        ));
+    }
     let mut units = Vec::new();
     let mut paired = vec![false; rotors.len()];
     for (index, rotor) in rotors.iter().enumerate() {
@@ -117,6 +129,7 @@ mod tests {
     use mixer_compiler::airframe::Spin;
 
     use super::*;
+    use crate::import::rotors::Own;
 
     fn rotor(channel: usize, position_m: [f64; 3], spin: Spin) -> Rotor {
         Rotor {
@@ -125,6 +138,7 @@ mod tests {
             position_m,
             axis: [0.0, 0.0, -1.0],
             spin,
+            own: Own::NONE,
         }
     }
 

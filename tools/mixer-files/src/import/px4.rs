@@ -4,9 +4,10 @@
 use mixer_compiler::airframe::Spin;
 
 use super::parameters::Parameters;
-use super::rotors::{Imported, Rotor};
+use super::rotors::{Imported, Own, Rotor};
 
-/// What PX4 takes where a file has no `CA_ROTORi_KM` and no `CA_ROTORi_AZ`.
+/// What PX4 takes where a file has no `CA_ROTORi_CT`, no `CA_ROTORi_KM` and no `CA_ROTORi_AZ`.
+const THRUST: f64 = 6.5;
 const MOMENT_RATIO: f64 = 0.05;
 const UPWARD: f64 = -1.0;
 
@@ -101,6 +102,12 @@ fn rotor(parameters: &Parameters, index: usize) -> Result<Rotor, String> {
         // Stacks hold single precision.
         axis: axis.map(|x| (x / length * 1e7).round() / 1e7 + 0.0),
         spin: if moment > 0.0 { Spin::Ccw } else { Spin::Cw },
+        own: Own {
+            thrust: value("CT", THRUST),
+            yaw: moment.abs(),
+            is_reversible: parameters.whole("CA_R_REV").unwrap_or(0) >> index & 1 == 1,
+            ..Own::NONE
+        },
     })
 }
 

@@ -18,6 +18,31 @@ pub struct Rotor {
     pub axis: [f64; 3],
     /// Seen from above.
     pub spin: Spin,
+    /// What the stack has of it and the mixer does not use.
+    pub(super) own: Own,
+}
+
+/// Settings of single rotors: the mixer has one pair for all units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Own {
+    /// Thrust per command, of any unit: PX4's `CA_ROTORn_CT`, the throttle factor of a `mmix`. 0 leaves a rotor out.
+    pub(super) thrust: f64,
+    /// Yaw per command or per thrust, without its sign: `CA_ROTORn_KM`, the yaw factor of a `mmix`.
+    pub(super) yaw: f64,
+    /// Pulse widths of throttle 0 and 1, us, where the rotor has its own.
+    pub(super) pulses_us: Option<[f64; 2]>,
+    /// Whether it turns both ways.
+    pub(super) is_reversible: bool,
+}
+
+impl Own {
+    /// Of a stack that has none of it.
+    pub(super) const NONE: Own = Own {
+        thrust: 1.0,
+        yaw: 1.0,
+        pulses_us: None,
+        is_reversible: false,
+    };
 }
 
 /// Two rotors in one place.

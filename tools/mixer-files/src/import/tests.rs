@@ -241,6 +241,46 @@ fn files_as_people_have_them() {
             Noted("PWM_AUX_MAX3 is 1950"),
         ),
         ("older pulses", with("PWM_MAX,1950\n"), Noted("PWM_MAX is 1950")),
+        // Of single rotors.
+        (
+            "thrust of one rotor",
+            with("CA_ROTOR2_CT,4.5\n"),
+            Refused("the upper rotors 0 and 2 have thrusts of 6.5 and 4.5"),
+        ),
+        (
+            "a rotor without thrust",
+            with("CA_ROTOR6_CT,0\n"),
+            Refused("rotor 6 has no thrust, and the stack leaves it out"),
+        ),
+        (
+            "thrusts of the layers",
+            (4..8).fold(px4(X8, comma), |text, k| {
+                text + &comma(&format!("CA_ROTOR{k}_CT"), 5.5)
+            }),
+            Noted("differ (6.5, 0.05 and 5.5, 0.05) and are not used"),
+        ),
+        (
+            "yaw of one unit",
+            instead("CA_ROTOR1_KM,-0.05", "CA_ROTOR1_KM,-0.02"),
+            Noted("the upper rotors 0 and 1 have yaw factors of 0.05 and 0.02"),
+        ),
+        (
+            "reversible",
+            with("CA_R_REV,3\n"),
+            Noted("rotors 0, 1 may turn backwards"),
+        ),
+        (
+            "pulses of the layers",
+            (1..=8).fold(px4(X8, comma), |text, k| {
+                let [low, high] = if k > 4 { [1100.0, 1900.0] } else { [1000.0, 2000.0] };
+                let lines = [("FUNC", 100.0 + f64::from(k)), ("MIN", low), ("MAX", high)];
+                lines.iter().fold(text, |text, (key, value)| {
+                    text + &comma(&format!("PWM_MAIN_{key}{k}"), *value)
+                })
+            }),
+            Noted("1000 to 2000 us of channels 0, 1, 2, 3; 1100 to 1900 us of channels 4, 5, 6, 7"),
+        ),
+        ("alike", px4(X8, comma), Silent("not used")),
         (
             "pulses of DShot",
             with("PWM_MAIN_TIM0,-4\nPWM_MAIN_MAX1,1900\n"),
@@ -335,6 +375,21 @@ fn files_as_people_have_them() {
         ),
         // Betaflight and INAV.
         ("OCTOX8", dump("mixer OCTOX8"), Noted(bf)),
+        (
+            "a throttle of one motor",
+            dump(&octox8.replace("mmix 3 1.000", "mmix 3 0.900")),
+            Refused("the upper rotors 0 and 3 have thrusts of 1 and 0.9"),
+        ),
+        (
+            "3D",
+            dump("feature 3D\nmixer OCTOX8"),
+            Noted("may turn backwards in the stack"),
+        ),
+        (
+            "Y4",
+            dump("mmix 0 1 0 1 -1\nmmix 1 1 -1 -1 0\nmmix 2 1 0 1 1\nmmix 3 1 1 -1 0"),
+            Refused("a Y4: rotors 1 and 3 are alone"),
+        ),
         (
             "OCTOX8 reversed",
             dump("mixer octox8\nset yaw_motors_reversed = ON"),

@@ -75,6 +75,8 @@ pub struct Columns {
     pub format: String,
     /// Whether names, rather than an assumption, say which rotor is the upper one.
     pub sides_named: bool,
+    /// Whether the user says it, of both rotors.
+    pub sides_by_hand: bool,
 }
 
 impl Index<Quantity> for Columns {
@@ -182,13 +184,23 @@ impl Columns {
             let Some(&(_, quantity, side)) = ROLES.iter().find(|(r, ..)| r == role) else {
                 return Err(unknown_role(role));
             };
-            let index = position(&headers, wanted).ok_or_else(|| {
-                Refusal::of(
-                    place,
-                    format!("no column {wanted:?} for the role {role}"),
-                    format!("one of: {}", headers.join(", ")),
-                )
-            })?;
+            let index = match positions(&headers, wanted)[..] {
+                [index] => index,
+                [] => {
+                    return Err(Refusal::of(
+                        place,
+                        format!("no column {wanted:?} for the role {role}"),
+                        format!("one of: {}", headers.join(", ")),
+                    ));
+                }
+                ref several => {
+                    return Err(Refusal::of(
+                        place,
+                        format!("{} columns are named {wanted:?}", several.len()),
+                        by_number(role, several),
+                    ));
+                }
+            };
             // A column of one rotor given by hand stands above the whole's.
             if side.is_some() {
                 columns[quantity].whole = None;
@@ -196,9 +208,12 @@ impl Columns {
             let (column, lack) = scaled(index, &headings[index], &names[index], quantity, role, by_hand);
             *columns.slot(quantity, side) = Some(column);
             lacks.extend(lack);
-            columns.sides_named |= matches!(role.as_str(), "upper" | "lower");
         }
-        columns.sides_named |= by_hand.swap;
+        let is_given = |wanted: &str| by_hand.columns.iter().any(|(role, _)| role == wanted);
+        columns.sides_by_hand = is_given("upper") && is_given("lower")
+            || by_hand.full_rpm.is_some() && is_given("upper_speed") && is_given("lower_speed");
+        let says_side = |(role, _): &(String, String)| role.starts_with("upper") || role.starts_with("lower");
+        columns.sides_named |= by_hand.columns.iter().any(says_side) || by_hand.swap;
         columns.by_speed(&names, by_hand);
         columns.require(by_hand, &mut lacks);
         if lacks.is_empty() {
@@ -302,6 +317,12 @@ impl Columns {
                         (Throttle, None) => {
                             ["upper", "lower"].map(|role| named(role, "HEADER")).join(" and ")
                         }
+                        _ if first == raw => {
+                            let same = headings.iter().map(|heading| &heading.name).enumerate();
+                            let same: Vec<usize> =
+                                same.filter(|(_, name)| *name == raw).map(|(k, _)| k).collect();
+                            by_number(role, &same)
+                        }
                         _ => named(role, &format!("{raw:?}")),
                     };
                     lacks.push((format!("the columns {first:?} and {raw:?} {both}"), mend));
@@ -335,7 +356,7 @@ fn of_full(column: Column, full_rpm: f64) -> Column {
 pub fn known(cells: &[String], by_hand: &ByHand) -> usize {
     let by_name = cells.iter().filter(|cell| Name::new(cell).quantity().is_some());
     let wanted = by_hand.columns.iter().map(|(_, wanted)| wanted);
-    let found = wanted.filter(|wanted| !wanted.starts_with('#') && position(cells, wanted).is_some());
+    let found = wanted.filter(|wanted| !wanted.starts_with('#') && !positions(cells, wanted).is_empty());
     by_name.count() + found.count()
 }
 
@@ -375,15 +396,36 @@ fn format_name(headers: &[String], names: &[Name]) -> String {
     .to_string()
 }
 
-fn position(headers: &[String], wanted: &str) -> Option<usize> {
+/// Columns of one name by their numbers.
+fn by_number(role: &str, columns: &[usize]) -> String {
+    let numbers = columns
+        .iter()
+        .map(|column| named(role, &format!("#{}", column + 1)));
+    numbers.collect::<Vec<_>>().join(" or ")
+}
+
+/// The columns that a text names: by its number, its name, its name spelled otherwise, or its name without unit.
+fn positions(headers: &[String], wanted: &str) -> Vec<usize> {
     if let Some(number) = wanted.strip_prefix('#').and_then(|n| n.parse::<usize>().ok()) {
-        return number.checked_sub(1).filter(|&i| i < headers.len());
+        let index = number.checked_sub(1).filter(|&i| i < headers.len());
+        return index.into_iter().collect();
     }
-    let exact = headers.iter().position(|h| h.trim() == wanted.trim());
     let spelled = units::normalised(wanted);
-    exact
-        .or_else(|| headers.iter().position(|h| units::normalised(h) == spelled))
-        .or_else(|| headers.iter().position(|h| Name::new(h).text == spelled))
+    let ways: [&dyn Fn(&str) -> bool; 3] = [
+        &|header| header.trim() == wanted.trim(),
+        &|header| units::normalised(header) == spelled,
+        &|header| Name::new(header).text == spelled,
+    ];
+    let found = ways.into_iter().map(|is_it| {
+        let all = headers.iter().enumerate();
+        all.filter(|(_, header)| is_it(header))
+            .map(|(k, _)| k)
+            .collect::<Vec<usize>>()
+    });
+    found
+        .into_iter()
+        .find(|found| !found.is_empty())
+        .unwrap_or_default()
 }
 
 /// The column of a role, and what its unit lacks.

@@ -213,6 +213,7 @@ pub fn read(name: &str, bytes: &[u8], reading: &Reading) -> Result<Log, Refusal>
         }
     }
     let mut notes: Vec<String> = stand_in(&columns, by_hand).into_iter().collect();
+    notes.extend(beyond_full_speed(&mut refused, samples.len()));
     if let Some((line, what)) = asides.first() {
         let more = match asides.len() {
             1 => String::new(),
@@ -233,6 +234,25 @@ pub fn read(name: &str, bytes: &[u8], reading: &Reading) -> Result<Log, Refusal>
         air,
         notes,
     })
+}
+
+/// Kind of the fault of a row whose speed is above that of full throttle.
+const BEYOND: &str = "beyond full speed";
+
+/// Takes rows above full speed from those refused, where they are the fewer: a propeller's table goes on beyond what a
+/// motor reaches. What is said of them.
+fn beyond_full_speed(refused: &mut Vec<RefusedRow>, read: usize) -> Option<String> {
+    let is_beyond = |row: &&RefusedRow| row.kind == BEYOND;
+    let count = refused.iter().filter(is_beyond).count();
+    let first = refused.iter().find(is_beyond).filter(|_| count < read)?;
+    let is = if count == 1 { "is" } else { "are" };
+    let all = read + refused.len();
+    let told = format!(
+        "{count} of {all} rows {is} left out, the first in line {}: {}",
+        first.line, first.reason
+    );
+    refused.retain(|row| row.kind != BEYOND);
+    Some(told)
 }
 
 /// What stands for the throttle.
@@ -370,7 +390,16 @@ impl Cells {
             Scale::Pulse(_) | Scale::Factor(1.0) => {
                 format!("is throttle {throttle:.3}, above the range {low}..{high} us (--pwm-range)")
             }
-            _ => format!("is throttle {throttle:.3}, above full throttle: another unit, or --rpm-at-full"),
+            Scale::Speed(_) => {
+                return Err(Fault::new(
+                    BEYOND,
+                    format!(
+                        "{:?} = {raw} is above --rpm-at-full: throttle {throttle:.3}",
+                        column.name
+                    ),
+                ));
+            }
+            _ => format!("is throttle {throttle:.3}, above full throttle: another unit"),
         };
         Err(Fault::new(
             format!("{} range", column.index),

@@ -343,8 +343,12 @@ fn speeds_stand_for_throttles() {
                 Noted("throttle is \"RPM\" over 5000 rpm"),
             ),
             (
-                "RPM,Thrust (N)\n2500,2\n6000,11\n",
-                Refused(&["above full throttle"]),
+                "RPM,Thrust (N)\n2500,2\n5000,8\n6000,11\n",
+                Noted("1 of 3 rows is left out, the first in line 4: \"RPM\" = 6000 is above --rpm-at-full"),
+            ),
+            (
+                "RPM,Thrust (N)\n5500,2\n6000,11\n",
+                Refused(&["above --rpm-at-full"]),
             ),
             ("throttle,thrust_n\n0.5,2\n1,8\n", Read(2, [1.0, 0.0, 8.0, 0.0])),
             (

@@ -97,7 +97,9 @@ mod tests {
     #[test]
     fn files_of_other_kinds_are_named() {
         for (bytes, what) in [
-            (&b"PK\x03\x04\x14"[..], "workbook"),
+            (&b"PK\x03\x04\x14\x00xl/workbook.xml"[..], "workbook"),
+            (b"PK\x03\x04\x14\x00word/document.xml", "text document"),
+            (b"PK\x03\x04\x14", "packed file"),
             (b"%PDF-1.7", "PDF"),
             (b" {\"a\": 1}", "JSON"),
             (b"[{\"a\": 1}]", "JSON"),

@@ -12,7 +12,7 @@ use crate::fit::basis::ThrottleBox;
 use crate::fit::cross::{self, Candidate};
 use crate::fit::fold::{self, Fold};
 use crate::fit::robust::{self, Outlier};
-use crate::fit::uncertainty::Uncertainty;
+use crate::fit::uncertainty::{Uncertainty, by_voltage};
 use crate::fit::voltage::Voltage;
 use crate::fit::wishes::FitOptions;
 use crate::fit::{Deficient, Design, Fit, fit, range};
@@ -37,6 +37,8 @@ pub struct Pair {
     /// `cw`: the spin of the upper rotor for which that sign of torque is clockwise on the
     /// airframe.
     pub upper_spin: &'static str,
+    /// Whether the lower rotor is the stronger one, as the user said of the columns.
+    pub lower_is_stronger: bool,
     /// The upper rotor alone, from `--lower-out`.
     pub lower_out: Option<Alone>,
     /// The lower rotor alone, from `--upper-out`.
@@ -104,17 +106,25 @@ pub fn identify(benches: &[Bench], voltage: Option<&Voltage>, wishes: &FitOption
     let drift = drift::examine(basis, &mut points, &mut warnings);
     let judged = channels(&points).map(|values| fit(&design, &values, throttle_box));
     // A constant in the torque looks as exchanged rotors do.
-    if !doubts::tare(&points, judged.each_ref(), &mut warnings) {
+    let lower_is_stronger = !doubts::tare(&points, judged.each_ref(), &mut warnings) && {
         let torque_drifts = drift.iter().any(|shown| shown.of == "torque" && shown.is_told());
         let asks = sign_is_found && !torque_drifts;
-        doubts::exchanged(basis, &judged[1], throttle_box, asks, &mut warnings);
-    }
+        let by_hand = benches.iter().all(|bench| bench.sides_by_hand);
+        doubts::lower_is_stronger(basis, &judged[1], throttle_box, by_hand, asks, &mut warnings)
+    };
+    let mean_v = mean_voltage(points.iter().map(|p| p.point)).map(|(mean, _)| mean);
+    let brought = normalised_to_v.zip(mean_v).zip(voltage);
+    let brought = brought.map_or([0.0; 2], |((to, from), voltage)| {
+        [&voltage.thrust, &voltage.torque].map(|exponent| by_voltage(exponent.deviation(), from, to))
+    });
+    let uncertainty = cross::chosen(&cross_validation).and_then(Candidate::uncertainty);
     Ok(Pair {
         basis,
         terms: basis.term_names(),
         thrust_n: thrust.coefficients.clone(),
         torque_nm: torque.coefficients.clone(),
         upper_spin: "cw",
+        lower_is_stronger,
         lower_out: None,
         upper_out: None,
         thrust,
@@ -124,14 +134,14 @@ pub fn identify(benches: &[Bench], voltage: Option<&Voltage>, wishes: &FitOption
             ..throttle_box
         },
         measured,
-        uncertainty: cross::chosen(&cross_validation).and_then(Candidate::uncertainty),
+        uncertainty: uncertainty.map(|own| own.with(brought)),
         cross_validation,
         outliers_left_out: wishes.robust,
         outliers,
         drift,
         fold,
         normalised_to_v,
-        mean_v: mean_voltage(points.iter().map(|p| p.point)).map(|(mean, _)| mean),
+        mean_v,
         warnings,
     })
 }

@@ -15,7 +15,7 @@ use crate::air::Air;
 use crate::bench::{Bench, Kind, is_one_signal, mean_voltage};
 use crate::fit::balance::throttles;
 use crate::fit::basis::ThrottleBox;
-use crate::fit::uncertainty::Uncertainty;
+use crate::fit::uncertainty::{EXPONENT_DEVIATION, Uncertainty, by_voltage};
 use crate::fit::{Design, ten_digits};
 use crate::identified::{bench_range, in_pack};
 use crate::refusal::Refusal;
@@ -40,6 +40,9 @@ const CLEAR: f64 = 1.03;
 /// Thrust of the two rotors alone at full throttle, as a ratio less 1, above which they are not of
 /// one kind.
 const UNEQUAL: f64 = 0.1;
+/// What rotors add that are not alike, % of full scale for each e-fold of their thrusts. An assumption: no pair of unequal
+/// rotors was measured.
+const UNEQUAL_PERCENT: f64 = 10.0;
 /// Rows of a pair from which on they describe it better by themselves.
 pub const ENOUGH_ROWS: usize = 16;
 
@@ -109,6 +112,8 @@ pub struct PredictedPair {
     pub torque_nm: Vec<f64>,
     /// `cw`, as `identify` has it.
     pub upper_spin: &'static str,
+    /// Whether the lower rotor is the stronger one, by its own run.
+    pub lower_is_stronger: bool,
     /// The box that the file commands.
     pub throttle: ThrottleBox,
     /// Its least throttle.
@@ -169,7 +174,9 @@ pub fn correct(
     let factors = found.factors.first().copied().unwrap_or([1.0; 3]);
     let rotors = scaled(&alone, factors);
     let map = |throttles| constants.pair(&rotors, spacing_ratio, throttles);
-    let pair = compiled(&map, rotors, uncertainty, throttle, &runs[0].file)?;
+    let mut pair = compiled(&map, rotors, uncertainty, throttle, &runs[0].file)?;
+    pair.lower_is_stronger =
+        full_thrusts(&runs).is_some_and(|[upper, lower]| lower > (1.0 + UNEQUAL) * upper);
     if pair.min_idle > throttle.min + 1e-9 {
         warnings.push(format!(
             "throttle.min is raised from {} to {}: below, the predicted map folds or is not inverted to its tolerance",
@@ -208,8 +215,9 @@ fn remarks(runs: &[Single], wishes: &PredictOptions, throttle: ThrottleBox, warn
             throttle.min
         ));
     }
-    let [upper, lower] = rotors(runs).map(|rotor| rotor.thrust.at(1.0));
-    if (upper / lower - 1.0).abs() > UNEQUAL {
+    if let Some([upper, lower]) =
+        full_thrusts(runs).filter(|[upper, lower]| (upper / lower - 1.0).abs() > UNEQUAL)
+    {
         warnings.push(format!(
             "the rotors alone give {upper:.2} and {lower:.2} N at full throttle: the interaction was measured on equal \
              rotors, so trust this the less, and look whether one run was blocked or at another voltage"
@@ -226,6 +234,11 @@ fn remarks(runs: &[Single], wishes: &PredictOptions, throttle: ThrottleBox, warn
             "the runs are of {a:.2} and {b:.2} V: --reference-voltage brings both to one"
         ));
     }
+}
+
+/// Thrusts of two runs at full throttle, N; none of one run for both rotors.
+fn full_thrusts(runs: &[Single]) -> Option<[f64; 2]> {
+    (runs.len() == 2).then(|| rotors(runs).map(|rotor| rotor.thrust.at(1.0)))
 }
 
 /// The upper and the lower rotor, which may be alike.
@@ -337,7 +350,20 @@ fn uncertainty(
 ) -> Uncertainty {
     let few = runs.iter().any(Single::is_sparse);
     let no_torque = runs.iter().any(|run| run.kappa_m.is_some());
-    let adding = [(true, PREDICTED), (few, FEW_ROWS), (no_torque, WITHOUT_TORQUE)];
+    let of_voltage = runs.iter().filter(|run| run.exponents != [0.0; 2]).map(|run| {
+        let brought = run.run_v.zip(run.voltage_v);
+        brought.map_or(0.0, |(from, to)| by_voltage(EXPONENT_DEVIATION, from, to))
+    });
+    let of_voltage = of_voltage.fold(0.0, f64::max);
+    let unequal =
+        UNEQUAL_PERCENT * libm::log(full_thrusts(runs).map_or(1.0, |[upper, lower]| lower / upper)).abs();
+    let adding = [
+        (true, PREDICTED),
+        (few, FEW_ROWS),
+        (no_torque, WITHOUT_TORQUE),
+        (true, [of_voltage; 2]),
+        (true, [unequal; 2]),
+    ];
     let without = Case {
         rows: Vec::new(),
         ..case.clone()
@@ -412,6 +438,7 @@ fn compiled(
             thrust_n,
             torque_nm,
             upper_spin: "cw",
+            lower_is_stronger: false,
             throttle,
             min_idle: throttle.min,
             lower_out: out(upper, -1.0),
@@ -464,6 +491,9 @@ impl PredictedPair {
         let mut document = DocumentMut::new();
         document.insert("throttle", table(&about("throttle"), limits));
         document.insert("pair", table(&about("pair"), pair));
+        if self.lower_is_stronger {
+            document["pair"]["stronger"] = value("lower");
+        }
         document
     }
 }

@@ -67,6 +67,8 @@ pub struct Single {
     pub kappa_m: Option<f64>,
     /// Voltage at which the curves hold, V, where it is known.
     pub voltage_v: Option<f64>,
+    /// Voltage at which the rows were run, in the mean, V, where it is known.
+    pub run_v: Option<f64>,
     /// Least and greatest voltage of the rows, V.
     pub range_v: Option<[f64; 2]>,
     /// Exponents of thrust and of torque that brought the rows from there to that voltage.
@@ -93,7 +95,8 @@ impl Single {
                 ),
             ));
         }
-        let (points, voltage_v) = at_one_voltage(bench, known, warnings)?;
+        let run_v = known.run_v.or(mean_voltage(&bench.points).map(|(mean, _)| mean));
+        let (points, voltage_v) = at_one_voltage(bench, known, run_v, warnings)?;
         let points = &points;
         let measured = extent(points.iter().map(|p| p.u));
         enough(file, points, measured)?;
@@ -132,6 +135,7 @@ impl Single {
             misfit_percent: [thrust.misfit_percent, torque.misfit_percent],
             kappa_m,
             voltage_v,
+            run_v,
             range_v: mean_voltage(&bench.points)
                 .filter(|_| known.run_v.is_none())
                 .map(|_| {
@@ -305,10 +309,10 @@ pub(crate) fn exponents_told([thrust, torque]: [f64; 2]) -> String {
 fn at_one_voltage(
     bench: &Bench,
     known: &RunFacts,
+    run_v: Option<f64>,
     warnings: &mut Vec<String>,
 ) -> Result<(Vec<Point>, Option<f64>), Refusal> {
-    let mean = mean_voltage(&bench.points).map(|(mean, _)| mean);
-    let Some(run_v) = known.run_v.or(mean) else {
+    let Some(run_v) = run_v else {
         return match known.reference_v {
             None => Ok((bench.points.clone(), None)),
             Some(_) => Err(Refusal::of(

@@ -231,3 +231,50 @@ fn sides_by_words_of_three_languages_and_in_the_airs_way() {
     let refused = find_by_hand("gas nord,gas sud,thrust_n,torque_nm", &ByHand::default()).unwrap_err();
     assert_eq!(refused.needed, "--column upper=HEADER and --column lower=HEADER");
 }
+
+/// Columns of one name are told by their numbers, and a name that two have is refused.
+#[test]
+fn columns_of_one_name() {
+    const HEADER: &str = "Throttle (%),Thrust (N),Thrust (N),Torque (Nm)";
+    let refused = |columns: &[(&str, &str)]| {
+        let columns = columns
+            .iter()
+            .map(|(role, name)| ((*role).to_owned(), (*name).to_owned()));
+        let by_hand = ByHand {
+            columns: columns.collect(),
+            ..ByHand::default()
+        };
+        find_by_hand(HEADER, &by_hand).map_err(|refusal| refusal.to_string())
+    };
+    for columns in [&[][..], &[("thrust", "Thrust")]] {
+        let told = refused(columns).unwrap_err();
+        assert!(
+            told.contains("--column thrust=#2 or --column thrust=#3"),
+            "{told}"
+        );
+    }
+    let found = refused(&[("thrust", "#3")]).expect("a column by its number");
+    assert_eq!(at(&found[Quantity::Thrust].whole), Some(2));
+}
+
+/// Roles of single rotors say which is the upper one; of both throttles they say it for good.
+#[test]
+fn sides_by_hand() {
+    let by_hand = |columns: &[(&str, &str)]| ByHand {
+        columns: columns
+            .iter()
+            .map(|(role, name)| ((*role).to_owned(), (*name).to_owned()))
+            .collect(),
+        ..ByHand::default()
+    };
+    const HEADER: &str = "a,b,Thrust (N),Torque (Nm),f a (N),f b (N)";
+    let throttles = [("upper", "a"), ("lower", "b")];
+    let found = find_by_hand(HEADER, &by_hand(&throttles)).expect("a map");
+    assert!(found.sides_named && found.sides_by_hand);
+    let found = find_by_hand(
+        "ESC A (us),ESC B (us),x (N),y (N),Torque (Nm)",
+        &by_hand(&[("upper_thrust", "x"), ("lower_thrust", "y")]),
+    );
+    let found = found.expect("a map");
+    assert!(found.sides_named && !found.sides_by_hand);
+}

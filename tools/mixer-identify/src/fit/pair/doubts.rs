@@ -114,29 +114,34 @@ pub(super) fn units(
     Ok(())
 }
 
-/// Says whether the rotors are exchanged, by the mean torque; asks where that does not tell and
+/// Whether the lower rotor is the stronger one: the mean torque says so of it, or of rotors that are exchanged, which
+/// `by_hand` rules out. Warns of both causes where nobody said which rotor is which; asks where the mean does not tell and
 /// nobody said which sign the torque has.
-pub(super) fn exchanged(
+pub(super) fn lower_is_stronger(
     basis: Basis,
     torque: &Fit,
     throttle: ThrottleBox,
+    by_hand: bool,
     sign_is_found: bool,
     warnings: &mut Vec<String>,
-) {
+) -> bool {
     let torque = Polynomial::of(basis, &torque.coefficients);
     let mean = mean_torque(|[u, l]| torque.at(u, l), [throttle.min, throttle.max]);
     let percent = 100.0 * mean;
-    match Wake::told_by(mean) {
-        Wake::Above => warnings.push(format!(
-            "upper and lower rotor look exchanged: at equal throttles the one taken as lower takes more torque (mean {percent:+.1} % \
-             of the largest), though the rotor in the wake takes less; --swap exchanges them"
+    let wake = Wake::told_by(mean);
+    match wake {
+        Wake::Above if !by_hand => warnings.push(format!(
+            "upper and lower rotor look exchanged, or the lower one is the stronger (more pitch, KV or diameter): at equal throttles \
+             the one taken as lower takes more torque (mean {percent:+.1} % of the largest), though of equal rotors the one in the wake \
+             takes less; exchanged columns are mended by --swap, right ones confirmed by --column upper=HEADER --column lower=HEADER"
         )),
-        Wake::Untold if sign_is_found => warnings.push(format!(
+        Wake::Untold if sign_is_found && !by_hand => warnings.push(format!(
             "the torque does not tell which rotor is the upper one (mean {percent:+.1} % of the largest): make sure that the columns \
              are the right way round (--swap exchanges them)"
         )),
-        Wake::Below | Wake::Untold => {}
+        Wake::Above | Wake::Below | Wake::Untold => {}
     }
+    by_hand && wake == Wake::Above
 }
 
 /// Powers of the throttle with which thrust grows along equal throttles: 1.5 to 1.9 on real maps, less

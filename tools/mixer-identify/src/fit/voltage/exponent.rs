@@ -2,6 +2,8 @@
 
 use serde::Serialize;
 
+use crate::fit::uncertainty::EXPONENT_DEVIATION;
+
 /// An exponent, or why there is none.
 #[derive(Debug, Clone, Serialize)]
 #[serde(rename_all = "snake_case", tag = "status")]
@@ -34,6 +36,13 @@ impl Exponent {
             Exponent::Declared { exponent, .. } => Some(*exponent),
             Exponent::Refused { .. } | Exponent::NotMeasured => None,
         }
+    }
+
+    /// One standard deviation of k: of an estimate its own, else that of propellers about the typical exponent.
+    pub fn deviation(&self) -> f64 {
+        const HALF_WIDTHS: f64 = 1.96;
+        self.estimate()
+            .map_or(EXPONENT_DEVIATION, |estimate| estimate.ci95 / HALF_WIDTHS)
     }
 
     /// This channel with the user's own exponent.

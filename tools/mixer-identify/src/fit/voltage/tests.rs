@@ -6,6 +6,7 @@ fn bench(kind: Kind, points: Vec<Point>) -> Bench {
         file: "b.csv".into(),
         format: "plain".into(),
         kind,
+        sides_by_hand: false,
         rows: points.len(),
         start_stop_rows: 0,
         streaming: false,

@@ -1,0 +1,104 @@
+//! What a stack's parameters say of single rotors, and the mixer, which has one pair for all units, does not use.
+
+use super::rotors::{Own, Rotor, Unit};
+
+/// Relative difference of settings that are one.
+const SAME: f64 = 0.01;
+
+/// Pulse widths that differ by less are one, us.
+const SAME_US: f64 = 2.0;
+
+/// A note for each setting that differs between rotors and is not used.
+///
+/// # Errors
+/// A rotor that the stack leaves out, and units whose rotors are not alike.
+pub(super) fn told(rotors: &[Rotor], units: &[Unit]) -> Result<Vec<String>, String> {
+    let of = |channel: usize| rotors.iter().find(|rotor| rotor.channel == channel);
+    let layer = |k: usize| {
+        units
+            .iter()
+            .filter_map(move |unit| of(unit.channels[k]))
+            .collect::<Vec<_>>()
+    };
+    let (layers, mut notes) = ([layer(0), layer(1)], Vec::new());
+    if let Some(rotor) = rotors.iter().find(|rotor| rotor.own.thrust == 0.0) {
+        return Err(format!(
+            "{}: rotor {} has no thrust, and the stack leaves it out: a pair has two rotors",
+            rotor.place, rotor.channel
+        ));
+    }
+    for (name, what) in [("upper", &layers[0]), ("lower", &layers[1])] {
+        if let Some([one, other]) = different(what, |own| own.thrust) {
+            return Err(format!(
+                "{}: the {name} rotors {} and {} have thrusts of {} and {}: the mixer has one pair for all units, and would be off \
+                 by that; if they are alike, give them one number",
+                other.place, one.channel, other.channel, one.own.thrust, other.own.thrust
+            ));
+        }
+        if let Some([one, other]) = different(what, |own| own.yaw) {
+            notes.push(format!(
+                "the {name} rotors {} and {} have yaw factors of {} and {}, which are not used: all units get the pair's torque",
+                one.channel, other.channel, one.own.yaw, other.own.yaw
+            ));
+        }
+    }
+    let first = |k: usize| layers[k].first().map(|rotor| rotor.own);
+    let differ = |a: f64, b: f64| (a - b).abs() > SAME * a.abs().max(b.abs());
+    if let (Some(upper), Some(lower)) = (first(0), first(1))
+        && (differ(upper.thrust, lower.thrust) || differ(upper.yaw, lower.yaw))
+    {
+        notes.push(format!(
+            "thrust and yaw factors of upper and lower rotors differ ({}, {} and {}, {}) and are not used: the pair's map has the difference",
+            upper.thrust, upper.yaw, lower.thrust, lower.yaw
+        ));
+    }
+    let reversible: Vec<String> = rotors
+        .iter()
+        .filter(|rotor| rotor.own.is_reversible)
+        .map(|rotor| rotor.channel.to_string())
+        .collect();
+    if !reversible.is_empty() {
+        notes.push(format!(
+            "rotors {} may turn backwards in the stack (CA_R_REV, feature 3D); in the mixer a rotor turns one way: switch that off",
+            reversible.join(", ")
+        ));
+    }
+    notes.extend(pulses(rotors));
+    Ok(notes)
+}
+
+/// Two of these rotors whose settings differ.
+fn different<'a>(rotors: &[&'a Rotor], of: fn(&Own) -> f64) -> Option<[&'a Rotor; 2]> {
+    let one = rotors.first()?;
+    let (a, size) = (of(&one.own), of(&one.own).abs());
+    let other = rotors.iter().find(|other| {
+        let b = of(&other.own);
+        (a - b).abs() > SAME * size.max(b.abs())
+    })?;
+    Some([one, other])
+}
+
+/// That outputs have several ranges of pulses.
+fn pulses(rotors: &[Rotor]) -> Option<String> {
+    let mut ranges: Vec<([f64; 2], Vec<usize>)> = Vec::new();
+    for rotor in rotors {
+        let us = rotor.own.pulses_us?;
+        let is_same =
+            |other: &[f64; 2]| (us[0] - other[0]).abs() < SAME_US && (us[1] - other[1]).abs() < SAME_US;
+        match ranges.iter_mut().find(|(other, _)| is_same(other)) {
+            Some((_, channels)) => channels.push(rotor.channel),
+            None => ranges.push((us, vec![rotor.channel])),
+        }
+    }
+    if ranges.len() < 2 {
+        return None;
+    }
+    let told = ranges.iter().map(|([low, high], channels)| {
+        let channels: Vec<String> = channels.iter().map(usize::to_string).collect();
+        format!("{low} to {high} us of channels {}", channels.join(", "))
+    });
+    Some(format!(
+        "the outputs have several ranges of pulses: {}; the pair was measured with one for both rotors",
+        told.collect::<Vec<_>>().join("; ")
+    ))
+}
