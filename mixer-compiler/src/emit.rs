@@ -18,6 +18,8 @@ pub(crate) fn module(compiled: &Compiled) -> TokenStream {
     let channels = Literal::usize_unsuffixed(2 * compiled.tables.units.len());
     let scale = wrench(compiled.scale());
     let ardupilot_scale = wrench(compiled.ardupilot_scale());
+    let betaflight_scale = wrench(compiled.betaflight_scale());
+    let betaflight_expo = Literal::f32_unsuffixed(compiled.betaflight_expo() as f32);
     let format = mixer_rt::tables::FORMAT;
     let ardupilot_doc = doc(&[match &compiled.airframe.voltage {
         Some(voltage) => format!(
@@ -46,6 +48,10 @@ pub(crate) fn module(compiled: &Compiled) -> TokenStream {
             pub const SCALE: rt::Wrench = #scale;
             #ardupilot_doc
             pub const ARDUPILOT_SCALE: rt::Wrench = #ardupilot_scale;
+            /// What PID sums of 1000 ask Betaflight for, and the thrust of its full throttle stick.
+            pub const BETAFLIGHT_SCALE: rt::Wrench = #betaflight_scale;
+            /// e of Betaflight's throttle stick: (1 - e) throttle + e throttle^2 of that thrust.
+            pub const BETAFLIGHT_EXPO: f32 = #betaflight_expo;
 
             #mixer
 

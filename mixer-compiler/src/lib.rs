@@ -187,6 +187,28 @@ impl Compiled {
         self.rotors(self.airframe.reference_v()).ardupilot_factors()
     }
 
+    /// Torques that PID sums of 1000 ask Betaflight for in hover, at the reference voltage, and the thrust of its full
+    /// throttle stick, that of all rotors at the highest voltage: `BETAFLIGHT_SCALE` of the generated module.
+    pub fn betaflight_scale(&self) -> mixer_rt::Wrench {
+        mixer_rt::Wrench {
+            thrust_n: self.ardupilot_scale().thrust_n,
+            ..self.rotors(self.airframe.reference_v()).betaflight()
+        }
+    }
+
+    /// e of the throttle stick in Betaflight: the thrust is (1 - e) throttle + e throttle^2 of that of the full stick, and
+    /// the stick in hover that of Betaflight's own mixer at the reference voltage, as far as an e from 0 to 1 has it. 1
+    /// without `[vehicle] mass_kg`.
+    pub fn betaflight_expo(&self) -> f64 {
+        let full_n = self.betaflight_scale().thrust_n.into();
+        self.rotors(self.airframe.reference_v()).betaflight_expo(full_n)
+    }
+
+    /// Betaflight's factors of roll, pitch and yaw, in its signs, by channel: `mmix` of the same geometry.
+    pub fn betaflight_factors(&self) -> Vec<[f64; 3]> {
+        self.rotors(self.airframe.reference_v()).betaflight_factors()
+    }
+
     /// PX4's `CA_ROTORn_PX`, `_PY`, `_PZ`, `_AX`, `_AY`, `_AZ`, `_CT` and `_KM`, by channel.
     pub fn px4_rotors(&self) -> Vec<[f64; 8]> {
         self.rotors(self.airframe.reference_v()).px4_rotors()

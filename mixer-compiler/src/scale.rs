@@ -34,6 +34,17 @@
 //! (`AP_MotorsMatrix::normalise_rpy_factors`) multiplies a torque by a factor per motor, which is in
 //! proportion to the motor's entry of B and 0.5 where that is largest; one unit asks for the sum of
 //! B times factor. Hence a stack's gains keep their meaning on this frame.
+//!
+//! Betaflight (`mixTable`) adds to each motor's output its factors of `mmix` times the PID sums over 1000, as shares of the
+//! range from idle to full throttle, and makes no thrust linear. Its tables (`mixerOctoX8`, `mixerY6`) have factors in
+//! proportion to the entries of B, whose largest less least is 2; a PID sum of 1000 asks for the sum of B times factor,
+//! times the slope of thrust over output in hover. Its throttle stick has no unit of thrust: here it has ArduPilot's curve,
+//!
+//! ```text
+//! thrust / largest thrust = (1 - e) throttle + e throttle^2
+//! ```
+//!
+//! with the e for which the stick in hover is that of Betaflight's own mixer.
 
 use mixer_rt::Wrench;
 use nalgebra::DMatrix;
@@ -49,6 +60,9 @@ const NO_SHARE: f64 = 1e-9;
 
 /// ArduPilot's factor of the motor with the largest part in an axis.
 const LARGEST_FACTOR: f64 = 0.5;
+
+/// Largest less least of Betaflight's factors of an axis.
+const BETAFLIGHT_RANGE: f64 = 2.0;
 
 /// Half the distance of a pair's rotors along their axis, m. Any will do: there a rotor has no lever.
 const LAYER_M: f64 = 0.05;
@@ -139,6 +153,59 @@ impl Rotors<'_> {
         };
         let factors = |(_, rotor)| [Axis::Roll, Axis::Pitch, Axis::Yaw].map(|axis| factor(axis, rotor));
         rotors.into_iter().map(factors).collect()
+    }
+
+    /// Torques that PID sums of 1000 ask Betaflight for; zero on axes that are not served.
+    pub(crate) fn betaflight(&self) -> Wrench {
+        let columns = self.columns();
+        let axes = &self.airframe.allocation.axes;
+        let [min, max] = self.pair.range();
+        // Of the share of the largest thrust over Betaflight's output; 1 without a hover.
+        let slope = self.hover_throttle().map_or(1.0, |h| {
+            let [[f_u, f_l], _] = self.pair.jacobian([h, h]);
+            (1.0 - min) * (f_u + f_l) / self.pair.efforts([max, max])[0]
+        });
+        Wrench::from_array(Axis::ALL.map(|axis| {
+            let row = axes.iter().position(|served| *served == axis);
+            row.filter(|_| axis != Axis::Thrust).map_or(0.0, |row| {
+                let entries = columns.row(row);
+                let range = entries.max() - entries.min();
+                (slope * BETAFLIGHT_RANGE * entries.norm_squared() / range) as f32
+            })
+        }))
+    }
+
+    /// e of the throttle stick's curve, from 0 to 1; 1 without a hover. The full stick has `full_n`.
+    pub(crate) fn betaflight_expo(&self, full_n: f64) -> f64 {
+        let min = self.pair.range()[0];
+        let hover = self.hover_throttle().zip(self.airframe.weight_n());
+        let expo = hover.map_or(1.0, |(h, weight_n)| {
+            let stick = (h - min) / (1.0 - min);
+            (stick - weight_n / full_n) / (stick - stick * stick)
+        });
+        expo.clamp(0.0, 1.0)
+    }
+
+    /// Betaflight's factors of roll, pitch and yaw, by channel, in its signs; zero on axes that are not served.
+    pub(crate) fn betaflight_factors(&self) -> Vec<[f64; 3]> {
+        // Its pitch is positive nose down.
+        let mut factors = self.ardupilot_factors();
+        for axis in 0..3 {
+            let of = || factors.iter().map(|factors| factors[axis]);
+            let range = of().fold(0.0, f64::max) - of().fold(0.0, f64::min);
+            let scale = if range > 0.0 {
+                BETAFLIGHT_RANGE / range
+            } else {
+                0.0
+            };
+            let sign = if axis == Axis::Pitch as usize {
+                -scale
+            } else {
+                scale
+            };
+            factors.iter_mut().for_each(|factors| factors[axis] *= sign);
+        }
+        factors
     }
 
     /// Place (m), axis, thrust (N) and torque over thrust (m, positive where it turns counter-clockwise)
@@ -263,6 +330,52 @@ mod tests {
             terms.iter().zip(torque).map(|(term, c)| term * c).sum::<f64>()
         });
         assert_near(scale.yaw_nm, 4.0 * (lower - upper));
+    }
+
+    /// Motors as Betaflight's mixer moves them, and the wrench of the map: its slope in hover, its thrust on the stick.
+    #[test]
+    fn betaflights_units_are_what_its_factors_give_in_hover() {
+        let path = format!("{}/airframes/isae-x8.toml", env!("CARGO_MANIFEST_DIR"));
+        let text = std::fs::read_to_string(path).unwrap() + "\n[vehicle]\nmass_kg = 3.2\n";
+        let compiled = compile(&Source::new("x8", text)).unwrap();
+        let factors = compiled.betaflight_factors();
+        let [min, max] = compiled.pair.range();
+        let wrench = |outputs: &dyn Fn(usize) -> f64| -> [f64; 4] {
+            let efforts = compiled.airframe.units.iter().map(|unit| {
+                let outputs = [unit.upper_channel, unit.lower_channel].map(outputs);
+                compiled.pair.efforts(outputs)
+            });
+            let efforts: Vec<[f64; 2]> = efforts.collect();
+            let (matrix, n) = (&compiled.effectiveness.matrix, efforts.len());
+            std::array::from_fn(|axis| {
+                let of = |(i, [f, q]): (usize, &[f64; 2])| matrix[(axis, i)] * f + matrix[(axis, n + i)] * q;
+                efforts.iter().enumerate().map(of).sum()
+            })
+        };
+        let hover = compiled.equal_hover_throttle().unwrap();
+        let scale = compiled.betaflight_scale().to_array();
+        // Betaflight's pitch is positive nose down.
+        for (axis, sign) in [(0, 1.0), (1, -1.0), (2, 1.0)] {
+            let small = 1e-4;
+            let moved = |sum: f64| wrench(&|motor| hover + (1.0 - min) * sum * factors[motor][axis])[axis];
+            let slope = sign * (moved(small) - moved(-small)) / (2.0 * small);
+            assert_near(scale[axis], slope);
+            let range = factors
+                .iter()
+                .map(|factors| factors[axis].abs())
+                .fold(0.0, f64::max);
+            assert!((range - 1.0).abs() < 1e-9, "{factors:?}");
+        }
+        let stick = (hover - min) / (1.0 - min);
+        let expo = compiled.betaflight_expo();
+        let thrust_n = ((1.0 - expo) * stick + expo * stick * stick) * f64::from(scale[3]);
+        assert!(
+            expo < 1.0 && (thrust_n / (3.2 * 9.80665) - 1.0).abs() < 1e-6,
+            "{expo} {thrust_n}"
+        );
+        let [_, _, _, full_n] = wrench(&|_| max);
+        let highest = compiled.airframe.voltage_factors(compiled.highest_v())[0];
+        assert_near(scale[3], highest * full_n);
     }
 
     #[test]

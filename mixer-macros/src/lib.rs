@@ -13,8 +13,8 @@ use quote::{quote, quote_spanned};
 use syn::LitStr;
 
 /// Compiles the airframe file at the given path into a module that is named after the airframe:
-/// `mix`, `mix_with_health` for rotors that are out, the constants `UNITS`, `CHANNELS`, `SCALE` and
-/// `ARDUPILOT_SCALE`, and the mixer as a type.
+/// `mix`, `mix_with_health` for rotors that are out, the constants `UNITS`, `CHANNELS`, `SCALE`,
+/// `ARDUPILOT_SCALE`, `BETAFLIGHT_SCALE` and `BETAFLIGHT_EXPO`, and the mixer as a type.
 ///
 /// The path is taken relative to the package (`CARGO_MANIFEST_DIR`) or, where there is no such
 /// file, to the folder of the calling file. The crate that calls the macro depends on `mixer-rt`
@@ -133,6 +133,8 @@ fn refusal(source: &Source, message: &str, span: Span) -> proc_macro2::TokenStre
             pub const CHANNELS: usize = 0;
             pub const SCALE: ::mixer_rt::Wrench = ::mixer_rt::Wrench::from_array([0.0; 4]);
             pub const ARDUPILOT_SCALE: ::mixer_rt::Wrench = SCALE;
+            pub const BETAFLIGHT_SCALE: ::mixer_rt::Wrench = SCALE;
+            pub const BETAFLIGHT_EXPO: f32 = 0.0;
             pub struct #mixer;
             impl ::mixer_rt::Airframe for #mixer {
                 const NAME: &'static str = "";

@@ -37,6 +37,15 @@ pub mod coaxial_bicopter {
         yaw_nm: 0.54054165,
         thrust_n: 61.887005,
     };
+    /// What PID sums of 1000 ask Betaflight for, and the thrust of its full throttle stick.
+    pub const BETAFLIGHT_SCALE: rt::Wrench = rt::Wrench {
+        roll_nm: 22.30893,
+        pitch_nm: 0.0,
+        yaw_nm: 0.866016,
+        thrust_n: 61.887005,
+    };
+    /// e of Betaflight's throttle stick: (1 - e) throttle + e throttle^2 of that thrust.
+    pub const BETAFLIGHT_EXPO: f32 = 1.0;
     /// The mixer of `coaxial-bicopter` as a type, for code that is generic over airframes.
     #[derive(Clone, Copy, Debug, Default)]
     pub struct CoaxialBicopter;

@@ -39,6 +39,15 @@ pub mod isae_x8 {
         yaw_nm: 1.0810833,
         thrust_n: 123.77401,
     };
+    /// What PID sums of 1000 ask Betaflight for, and the thrust of its full throttle stick.
+    pub const BETAFLIGHT_SCALE: rt::Wrench = rt::Wrench {
+        roll_nm: 31.549784,
+        pitch_nm: 31.549784,
+        yaw_nm: 1.732032,
+        thrust_n: 123.77401,
+    };
+    /// e of Betaflight's throttle stick: (1 - e) throttle + e throttle^2 of that thrust.
+    pub const BETAFLIGHT_EXPO: f32 = 1.0;
     /// The mixer of `isae-x8` as a type, for code that is generic over airframes.
     #[derive(Clone, Copy, Debug, Default)]
     pub struct IsaeX8;

@@ -41,6 +41,15 @@ pub mod px4_x12 {
         yaw_nm: 1.621625,
         thrust_n: 185.66101,
     };
+    /// What PID sums of 1000 ask Betaflight for, and the thrust of its full throttle stick.
+    pub const BETAFLIGHT_SCALE: rt::Wrench = rt::Wrench {
+        roll_nm: 74.3631,
+        pitch_nm: 85.86707,
+        yaw_nm: 2.598048,
+        thrust_n: 185.66101,
+    };
+    /// e of Betaflight's throttle stick: (1 - e) throttle + e throttle^2 of that thrust.
+    pub const BETAFLIGHT_EXPO: f32 = 1.0;
     /// The mixer of `px4-x12` as a type, for code that is generic over airframes.
     #[derive(Clone, Copy, Debug, Default)]
     pub struct Px4X12;

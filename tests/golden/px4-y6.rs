@@ -38,6 +38,15 @@ pub mod px4_y6 {
         yaw_nm: 0.8108125,
         thrust_n: 92.830505,
     };
+    /// What PID sums of 1000 ask Betaflight for, and the thrust of its full throttle stick.
+    pub const BETAFLIGHT_SCALE: rt::Wrench = rt::Wrench {
+        roll_nm: 21.466148,
+        pitch_nm: 24.7877,
+        yaw_nm: 1.299024,
+        thrust_n: 92.830505,
+    };
+    /// e of Betaflight's throttle stick: (1 - e) throttle + e throttle^2 of that thrust.
+    pub const BETAFLIGHT_EXPO: f32 = 1.0;
     /// The mixer of `px4-y6` as a type, for code that is generic over airframes.
     #[derive(Clone, Copy, Debug, Default)]
     pub struct Px4Y6;

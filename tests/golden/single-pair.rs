@@ -36,6 +36,15 @@ pub mod single_pair {
         yaw_nm: 0.216504,
         thrust_n: 24.7877,
     };
+    /// What PID sums of 1000 ask Betaflight for, and the thrust of its full throttle stick.
+    pub const BETAFLIGHT_SCALE: rt::Wrench = rt::Wrench {
+        roll_nm: 0.0,
+        pitch_nm: 0.0,
+        yaw_nm: 0.433008,
+        thrust_n: 24.7877,
+    };
+    /// e of Betaflight's throttle stick: (1 - e) throttle + e throttle^2 of that thrust.
+    pub const BETAFLIGHT_EXPO: f32 = 1.0;
     /// The mixer of `single-pair` as a type, for code that is generic over airframes.
     #[derive(Clone, Copy, Debug, Default)]
     pub struct SinglePair;

@@ -39,6 +39,15 @@ pub mod x8_11in_cubic {
         yaw_nm: 0.7636738,
         thrust_n: 72.07794,
     };
+    /// What PID sums of 1000 ask Betaflight for, and the thrust of its full throttle stick.
+    pub const BETAFLIGHT_SCALE: rt::Wrench = rt::Wrench {
+        roll_nm: 15.29004,
+        pitch_nm: 15.29004,
+        yaw_nm: 1.5273476,
+        thrust_n: 72.07794,
+    };
+    /// e of Betaflight's throttle stick: (1 - e) throttle + e throttle^2 of that thrust.
+    pub const BETAFLIGHT_EXPO: f32 = 1.0;
     /// The mixer of `x8-11in-cubic` as a type, for code that is generic over airframes.
     #[derive(Clone, Copy, Debug, Default)]
     pub struct X8_11inCubic;

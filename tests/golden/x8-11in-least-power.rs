@@ -39,6 +39,15 @@ pub mod x8_11in_least_power {
         yaw_nm: 1.1727917,
         thrust_n: 107.32853,
     };
+    /// What PID sums of 1000 ask Betaflight for, and the thrust of its full throttle stick.
+    pub const BETAFLIGHT_SCALE: rt::Wrench = rt::Wrench {
+        roll_nm: 19.733097,
+        pitch_nm: 19.733097,
+        yaw_nm: 2.079688,
+        thrust_n: 107.32853,
+    };
+    /// e of Betaflight's throttle stick: (1 - e) throttle + e throttle^2 of that thrust.
+    pub const BETAFLIGHT_EXPO: f32 = 1.0;
     /// The mixer of `x8-11in-least-power` as a type, for code that is generic over airframes.
     #[derive(Clone, Copy, Debug, Default)]
     pub struct X8_11inLeastPower;

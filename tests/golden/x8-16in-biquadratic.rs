@@ -39,6 +39,15 @@ pub mod x8_16in_biquadratic {
         yaw_nm: 2.1100316,
         thrust_n: 168.08395,
     };
+    /// What PID sums of 1000 ask Betaflight for, and the thrust of its full throttle stick.
+    pub const BETAFLIGHT_SCALE: rt::Wrench = rt::Wrench {
+        roll_nm: 53.483986,
+        pitch_nm: 53.483986,
+        yaw_nm: 4.220063,
+        thrust_n: 168.08395,
+    };
+    /// e of Betaflight's throttle stick: (1 - e) throttle + e throttle^2 of that thrust.
+    pub const BETAFLIGHT_EXPO: f32 = 1.0;
     /// The mixer of `x8-16in-biquadratic` as a type, for code that is generic over airframes.
     #[derive(Clone, Copy, Debug, Default)]
     pub struct X8_16inBiquadratic;

@@ -39,6 +39,15 @@ pub mod x8_16in_quartic {
         yaw_nm: 1.8788425,
         thrust_n: 161.10217,
     };
+    /// What PID sums of 1000 ask Betaflight for, and the thrust of its full throttle stick.
+    pub const BETAFLIGHT_SCALE: rt::Wrench = rt::Wrench {
+        roll_nm: 51.262398,
+        pitch_nm: 51.262398,
+        yaw_nm: 3.757685,
+        thrust_n: 161.10217,
+    };
+    /// e of Betaflight's throttle stick: (1 - e) throttle + e throttle^2 of that thrust.
+    pub const BETAFLIGHT_EXPO: f32 = 1.0;
     /// The mixer of `x8-16in-quartic` as a type, for code that is generic over airframes.
     #[derive(Clone, Copy, Debug, Default)]
     pub struct X8_16inQuartic;

@@ -39,6 +39,15 @@ pub mod x8_22in_cubic {
         yaw_nm: 3.9760613,
         thrust_n: 234.73984,
     };
+    /// What PID sums of 1000 ask Betaflight for, and the thrust of its full throttle stick.
+    pub const BETAFLIGHT_SCALE: rt::Wrench = rt::Wrench {
+        roll_nm: 99.591675,
+        pitch_nm: 99.591675,
+        yaw_nm: 7.9521227,
+        thrust_n: 234.73984,
+    };
+    /// e of Betaflight's throttle stick: (1 - e) throttle + e throttle^2 of that thrust.
+    pub const BETAFLIGHT_EXPO: f32 = 1.0;
     /// The mixer of `x8-22in-cubic` as a type, for code that is generic over airframes.
     #[derive(Clone, Copy, Debug, Default)]
     pub struct X8_22inCubic;

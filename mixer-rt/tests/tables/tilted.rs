@@ -41,6 +41,15 @@ pub mod tilted {
         yaw_nm: 4.0026917,
         thrust_n: 135.78683,
     };
+    /// What PID sums of 1000 ask Betaflight for, and the thrust of its full throttle stick.
+    pub const BETAFLIGHT_SCALE: rt::Wrench = rt::Wrench {
+        roll_nm: 26.608644,
+        pitch_nm: 30.725016,
+        yaw_nm: 6.306025,
+        thrust_n: 135.78683,
+    };
+    /// e of Betaflight's throttle stick: (1 - e) throttle + e throttle^2 of that thrust.
+    pub const BETAFLIGHT_EXPO: f32 = 1.0;
     /// The mixer of `tilted` as a type, for code that is generic over airframes.
     #[derive(Clone, Copy, Debug, Default)]
     pub struct Tilted;

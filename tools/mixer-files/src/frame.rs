@@ -39,10 +39,13 @@ impl Frame {
 
     /// Outputs of the upper and of the lower rotor of each unit, clockwise from the first, in a
     /// stack's motor order, and how the first upper rotor turns there: PX4's geometries octa_cox,
-    /// hexa_cox, dodeca_top_cox and dodeca_bottom_cox; ArduPilot's octaquad X, Y6B and dodecahexa X.
+    /// hexa_cox, dodeca_top_cox and dodeca_bottom_cox; ArduPilot's octaquad X, Y6B and dodecahexa X;
+    /// Betaflight's OCTOX8, and the places of its Y6.
     fn outputs(self, stack: Stack) -> Option<(Vec<[usize; 2]>, Spin)> {
         let pairs = |n: usize| (0..n).map(|k| [2 * k, 2 * k + 1]).collect();
         match (self, stack) {
+            (Frame::X8, Stack::Betaflight) => Some((vec![[1, 5], [0, 4], [2, 6], [3, 7]], Spin::Ccw)),
+            (Frame::Y6, Stack::Betaflight) => Some((vec![[1, 4], [0, 3], [2, 5]], Spin::Cw)),
             (Frame::X8, _) => Some((vec![[0, 5], [3, 6], [2, 7], [1, 4]], Spin::Ccw)),
             (Frame::Y6, _) => Some((pairs(3), Spin::Cw)),
             (Frame::X12, Stack::Ardupilot) => Some((pairs(6), Spin::Ccw)),
@@ -50,7 +53,7 @@ impl Frame {
                 [4, 0, 3, 5, 1, 2].into_iter().map(|top| [top, top + 6]).collect(),
                 Spin::Ccw,
             )),
-            (Frame::Bicopter | Frame::Single, _) => None,
+            (Frame::X12, Stack::Betaflight) | (Frame::Bicopter | Frame::Single, _) => None,
         }
     }
 }
@@ -187,8 +190,8 @@ impl NewFrame<'_> {
              \n[allocation]\n"
         );
         text.push_str(match self.outputs {
-            Some(Stack::Ardupilot) => {
-                "airmode = \"roll-pitch\"                 # ArduPilot asks for roll and pitch at any throttle\n"
+            Some(Stack::Ardupilot | Stack::Betaflight) => {
+                "airmode = \"roll-pitch\"                 # the stack asks for roll and pitch at any throttle\n"
             }
             _ => "airmode = \"disabled\"                   # or \"roll-pitch\": the thrust may rise for roll and pitch; PX4's words\n",
         });

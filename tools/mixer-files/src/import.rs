@@ -10,7 +10,7 @@
 //! ```
 
 mod ardupilot;
-mod betaflight;
+pub(crate) mod betaflight;
 mod outputs;
 mod pairs;
 mod parameters;

@@ -1,6 +1,7 @@
 //! An airframe's parameters as files that a flight stack loads.
 
 mod ardupilot;
+mod betaflight;
 pub mod frames;
 mod parameter;
 mod px4;
@@ -46,7 +47,7 @@ impl Options {
 /// The form of the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
-    /// For a ground station: QGroundControl's .params, ArduPilot's .parm.
+    /// For a ground station: QGroundControl's .params, ArduPilot's .parm, lines of Betaflight's CLI.
     GroundStation,
     /// A start script of PX4's simulator.
     Simulator,
@@ -56,7 +57,7 @@ impl Format {
     /// All, each with its word on the command line and what it is.
     #[rustfmt::skip]
     pub const ALL: [(Format, &'static str, &'static str); 2] = [
-        (Format::GroundStation, "parameters", "A file for a ground station: QGroundControl's .params, ArduPilot's .parm"),
+        (Format::GroundStation, "parameters", "A file for a ground station: QGroundControl's .params, ArduPilot's .parm, lines of Betaflight's CLI"),
         (Format::Simulator, "airframe", "A start script of PX4's simulator"),
     ];
 }
@@ -90,7 +91,13 @@ pub fn params(compiled: &Compiled, file: &str, options: &Options) -> Result<Para
                 format!("{},{}", parameter.name, parameter.value)
             })
         }
-        (Stack::Ardupilot, Format::Simulator) => {
+        (Stack::Betaflight, Format::GroundStation) => {
+            head + &lines(&list, |parameter| match parameter.value {
+                Value::Line => parameter.name.clone(),
+                value => format!("set {} = {value}", parameter.name),
+            }) + "save\n"
+        }
+        (Stack::Ardupilot | Stack::Betaflight, Format::Simulator) => {
             return Err("--format airframe is for PX4".to_owned());
         }
         (Stack::Px4, Format::Simulator) => {
@@ -126,12 +133,15 @@ fn parameters(options: &Options, compiled: &Compiled) -> Result<Parameters, Stri
     match options.stack {
         Stack::Px4 => px4::geometry(compiled, &mut all)?,
         Stack::Ardupilot => ardupilot::geometry(compiled, options.own, &mut all),
+        Stack::Betaflight => betaflight::geometry(compiled, &mut all)?,
     }
     match (options.stack, options.own) {
         (Stack::Px4, true) => px4::own(compiled, currents, &mut all),
         (Stack::Px4, false) => px4::settings(compiled, currents, &mut all),
         (Stack::Ardupilot, true) => ardupilot::own(compiled, &mut all),
         (Stack::Ardupilot, false) => ardupilot::settings(compiled, &mut all),
+        (Stack::Betaflight, true) => betaflight::own(compiled, &mut all),
+        (Stack::Betaflight, false) => betaflight::settings(compiled, &mut all),
     }
     let pulses_us = options.pulses_us.or_else(|| bench_pulses(&compiled.airframe));
     match (options.format, pulses_us, options.stack) {
@@ -139,10 +149,12 @@ fn parameters(options: &Options, compiled: &Compiled) -> Result<Parameters, Stri
         (Format::Simulator, ..) => px4::simulated(compiled, &mut all),
         (_, Some(pulses), Stack::Px4) => px4::pulses(compiled, pulses, &mut all),
         (_, Some(pulses), Stack::Ardupilot) => ardupilot::pulses(pulses, &mut all),
+        (_, Some(pulses), Stack::Betaflight) => betaflight::pulses(pulses, &mut all),
         (_, None, stack) => {
             let names = match stack {
                 Stack::Px4 => "PWM_MAIN_MINn and PWM_MAIN_MAXn (or PWM_AUX_)",
                 Stack::Ardupilot => "MOT_PWM_MIN and MOT_PWM_MAX",
+                Stack::Betaflight => "min_command and max_throttle, which DShot does not use,",
             };
             all.note(format!(
                 "{names} are missing: --pwm-range gives them, the pulse widths of throttle 0 and 1 on the bench"
@@ -174,11 +186,17 @@ fn header(compiled: &Compiled, file: &str, options: &Options, notes: &[String]) 
         let unit = match options.stack {
             Stack::Px4 => compiled.scale(),
             Stack::Ardupilot => compiled.ardupilot_scale(),
+            Stack::Betaflight => compiled.betaflight_scale(),
         };
         let (roll, pitch, yaw, thrust) = (unit.roll_nm, unit.pitch_nm, unit.yaw_nm, unit.thrust_n);
         let _ = writeln!(
             head,
-            "# A setpoint of 1 is {roll:.4} N m roll, {pitch:.4} N m pitch, {yaw:.4} N m yaw, {thrust:.3} N."
+            "# {} is {roll:.4} N m roll, {pitch:.4} N m pitch, {yaw:.4} N m yaw, {thrust:.3} N.",
+            if options.stack == Stack::Betaflight {
+                "A PID sum of 1000, or full stick,"
+            } else {
+                "A setpoint of 1"
+            },
         );
     }
     for note in notes {
@@ -211,7 +229,7 @@ fn lines(list: &[Parameter], line: impl Fn(&Parameter) -> String) -> String {
 fn ground_station(parameter: &Parameter) -> String {
     let Parameter { name, value, .. } = parameter;
     let kind = match value {
-        Value::Whole(_) => 6,
+        Value::Whole(_) | Value::Line => 6,
         Value::Real(_) => 9,
     };
     format!("1\t1\t{name}\t{value}\t{kind}")

@@ -5,7 +5,7 @@
 //! cascade for both mixers, [`manoeuvre`] the hover with steps in z and a yaw profile, [`tracking`]
 //! Table II.
 //!
-//! [`sitl`] is another simulation: the vehicle of any airframe file for PX4 and ArduPilot.
+//! [`sitl`] is another simulation: the vehicle of any airframe file for PX4, ArduPilot and Betaflight.
 //!
 //! # What this can show, and what it cannot
 //!

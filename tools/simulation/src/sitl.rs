@@ -1,12 +1,13 @@
-//! One vehicle for the software in the loop of PX4 and ArduPilot.
+//! One vehicle for the software in the loop of PX4, ArduPilot and Betaflight.
 //!
 //! [`vehicle`] makes the plant of an airframe file, [`world`] has it on the ground or in the air,
-//! [`sensors`] measures it. [`px4`] and [`ardupilot`] speak the interfaces
-//! that the stacks have for outside simulators; [`pilot`] flies a [`plan`] by MAVLink; [`record`]
+//! [`sensors`] measures it. [`px4`], [`ardupilot`] and [`betaflight`] speak the interfaces
+//! that the stacks have for outside simulators; [`pilot`] flies a [`plan`] by MAVLink, [`sticks`] by sticks; [`record`]
 //! holds the truth, [`score`] makes the table of it.
 
 pub mod ardupilot;
 pub mod arguments;
+pub mod betaflight;
 pub mod flight;
 pub mod frames;
 pub mod link;
@@ -17,6 +18,7 @@ pub mod px4;
 pub mod record;
 pub mod score;
 pub mod sensors;
+pub mod sticks;
 pub mod vehicle;
 pub mod world;
 
@@ -26,9 +28,10 @@ use std::net::SocketAddr;
 use self::arguments::Arguments;
 use self::flight::{End, Flight};
 use self::link::Link;
-use self::pilot::{Pilot, Stack};
+use self::pilot::{Pilot, Stack, Station};
 use self::score::Score;
 use self::sensors::Sensors;
+use self::sticks::Sticks;
 use self::vehicle::Vehicle;
 
 /// PX4's port of its MAVLink for an offboard computer, instance 0.
@@ -87,17 +90,30 @@ pub fn run(arguments: &Arguments) -> Result<(), String> {
         output = file(arguments)?;
         say("PX4 on TCP", listener.local_addr());
         // Without a manoeuvre, too: PX4 has its battery by this link.
-        let pilot = Pilot::new(Stack::Px4, link, arguments);
-        let mut flight = Flight::new(vehicle, Some(pilot), arguments);
+        let pilot = Station::new(Stack::Px4, link, arguments);
+        let mut flight = Flight::new(vehicle, Some(Box::new(pilot)), arguments);
         let end = px4::serve(&listener, &mut flight, &mut sensors);
+        (flight, end)
+    } else if arguments.betaflight {
+        if arguments.speed != 1.0 {
+            return Err("--speed: Betaflight's time is that of the wall clock".to_owned());
+        }
+        let port = arguments.port.unwrap_or(betaflight::PORT);
+        let socket = betaflight::listen(port)?;
+        output = file(arguments)?;
+        say("Betaflight on UDP", socket.local_addr());
+        let sticks = Sticks::new(vehicle.hover_throttle, arguments);
+        let pilot = arguments.fly.map(|_| Box::new(sticks) as Box<dyn Pilot>);
+        let mut flight = Flight::new(vehicle, pilot, arguments);
+        let end = betaflight::serve(&socket, port, &mut flight, &mut sensors, arguments.pwm_range);
         (flight, end)
     } else {
         let socket = ardupilot::listen(arguments.port.unwrap_or(ardupilot::PORT))?;
         output = file(arguments)?;
         say("ArduPilot on UDP", socket.local_addr());
         let link = Link::tcp(arguments.link.unwrap_or(ARDUPILOT_LINK));
-        let pilot = Pilot::new(Stack::Ardupilot, link, arguments);
-        let pilot = arguments.fly.map(|_| pilot);
+        let pilot = Station::new(Stack::Ardupilot, link, arguments);
+        let pilot = arguments.fly.map(|_| Box::new(pilot) as Box<dyn Pilot>);
         let mut flight = Flight::new(vehicle, pilot, arguments);
         let end = ardupilot::serve(&socket, &mut flight, &mut sensors, arguments.pwm_range);
         (flight, end)

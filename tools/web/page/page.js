@@ -12,6 +12,7 @@ const LARGEST = 4 << 20;
 const OUTPUTS = [
   ["airframe", "Airframe file"], ["pair", "Pair's tables"], ["report", "Report page"], ["px4", "PX4 parameters"],
   ["ardupilot", "ArduPilot parameters"], ["px4-own", "PX4, its own mixer"], ["ardupilot-own", "ArduPilot, its own mixer"],
+  ["betaflight", "Betaflight's CLI lines"], ["betaflight-own", "Betaflight, its own mixer"],
   ["rs", "Generated Rust"], ["vectors.csv", "Golden outputs"], ["rotors-out.csv", "Golden, rotors out"], ["report.txt", "Every number"],
 ];
 
@@ -242,8 +243,10 @@ function receive(airframe) {
 }
 const differs = () => Boolean(state.airframe && built && state.airframe.text !== built.text);
 
-let checking = 0, spent = 0;
-async function check() {
+let checking = 0, spent = 0, latest;
+// One that is overtaken ends with the one that overtook it.
+const check = () => (latest = checkOnce());
+async function checkOnce() {
   if (!state.airframe) return;
   const mine = checking += 1, began = performance.now();
   const { name, text } = state.airframe;
@@ -253,7 +256,7 @@ async function check() {
   } catch (error) {
     return say(error.message, true);
   }
-  if (mine !== checking) return;
+  if (mine !== checking) return latest;
   [told, checked] = [answer, text];
   show();
   spent = Math.round(performance.now() - began);

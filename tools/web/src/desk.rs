@@ -122,7 +122,7 @@ impl Checked {
         )
     }
 
-    /// A file: `px4` or `ardupilot`, parameters for this mixer, with `-own` those for the stack's own;
+    /// A file: `px4`, `ardupilot` or `betaflight`, parameters for this mixer, with `-own` those for the stack's own;
     /// `rs`, `report.txt`, `vectors.csv` or `rotors-out.csv`, a golden output. `pulses` are pulse widths
     /// of throttle 0 and 1, as `1000,2000`, or empty.
     ///
@@ -149,6 +149,7 @@ impl Checked {
             let ending = match stack {
                 Stack::Px4 => "params",
                 Stack::Ardupilot => "parm",
+                Stack::Betaflight => "txt",
             };
             return Ok(Output {
                 name: format!("{name}{}.{ending}", if own { "-own" } else { "" }),

@@ -12,6 +12,8 @@ PARAMETERS = {
     "ardupilot": "--stack ardupilot",
     "px4-own": "--stack px4 --own",
     "ardupilot-own": "--stack ardupilot --own",
+    "betaflight": "--stack betaflight",
+    "betaflight-own": "--stack betaflight --own",
 }
 AIRFRAMES = sorted((ROOT / "airframes").glob("*.toml")) + sorted((ROOT / "examples/simulator").glob("*.toml"))
 
@@ -36,7 +38,7 @@ def same_parameters(desk, output, words):
     if expected:
         name, content = desk.save(output)
         assert content == expected.encode()
-        assert name.endswith(".params" if output.startswith("px4") else ".parm")
+        assert name.endswith({"p": ".params", "a": ".parm", "b": ".txt"}[output[0]])
         notes = [f"{name}: {message}" for _, message in told]
     else:
         desk.click(f"[data-output='{output}']")

@@ -10,13 +10,14 @@ use crate::{Done, file, print_error};
 
 /// Writes an airframe's parameters for a flight stack, each with its reason
 ///
-/// Without --own they are for this mixer: `examples/px4` or `examples/ardupilot` puts out the
-/// throttles. With it they are for the stack's own mixer on the same vehicle, to compare with.
+/// Without --own they are for this mixer: `examples/px4`, `examples/ardupilot` or
+/// `examples/betaflight` puts out the throttles. With it they are for the stack's own mixer on the same vehicle, to compare with.
 ///
 /// PX4:       CA_* in motor order, hover and least thrust, failure detection, what must be off.
 ///            `--format airframe` writes a start script for PX4's simulator and, beside it as
 ///            FILE.post, what starts this mixer in place of control_allocator.
 /// ArduPilot: FRAME_CLASS, with --own FRAME_TYPE, and MOT_*.
+/// Betaflight: lines of the CLI, mixer or mmix, idle, hover, what must be off.
 ///
 /// Parameters that need more than the airframe file says are named on stderr and in the file.
 #[derive(clap::Args, Debug)]

@@ -16,7 +16,7 @@ use crate::params::frames::LAYER_M;
 /// Betaflight's coaxial tables (`mixerOctoX8`, `mixerY6`): roll, pitch, yaw; throttle is 1. The
 /// second half of the motors is under the first.
 #[rustfmt::skip]
-const TABLES: [(&str, &[[f64; 3]]); 2] = [
+pub(crate) const TABLES: [(&str, &[[f64; 3]]); 2] = [
     ("OCTOX8", &[
         [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0], [1.0, 1.0, 1.0], [1.0, -1.0, -1.0],
         [-1.0, 1.0, 1.0], [-1.0, -1.0, -1.0], [1.0, 1.0, -1.0], [1.0, -1.0, 1.0],

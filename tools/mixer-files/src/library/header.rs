@@ -90,6 +90,10 @@ impl Header<'_> {
                 ("REFERENCE_DENSITY", &float(airframe.reference_density() as f32)),
                 ("PX4", &scales("", compiled.scale())),
                 ("ARDUPILOT", &scales("ARDUPILOT_", compiled.ardupilot_scale())),
+                ("BETAFLIGHT", &scales("BETAFLIGHT_", compiled.betaflight_scale())),
+                ("EXPO", &float(compiled.betaflight_expo() as f32)),
+                ("MMIX", &rows(&compiled.betaflight_factors())),
+                ("FULL", &at(|voltage| format!(", at {:?} V", voltage.range[1]))),
                 ("ROTOR_ROWS", &rows(&compiled.px4_rotors())),
                 ("FACTORS", &rows(&compiled.ardupilot_factors())),
                 (

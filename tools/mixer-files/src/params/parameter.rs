@@ -25,6 +25,8 @@ pub(super) enum Value {
     Whole(i32),
     /// A number in single precision.
     Real(f64),
+    /// None: the name is a line of its own.
+    Line,
 }
 
 impl fmt::Display for Value {
@@ -32,6 +34,7 @@ impl fmt::Display for Value {
         match self {
             Value::Whole(value) => write!(f, "{value}"),
             Value::Real(value) => write!(f, "{value}"),
+            Value::Line => Ok(()),
         }
     }
 }
@@ -85,6 +88,11 @@ impl Reason<'_> {
 
     pub(crate) fn whole(&mut self, name: impl Into<String>, value: i32) -> &mut Self {
         self.add(name, Value::Whole(value))
+    }
+
+    /// A line of its own, of Betaflight's CLI.
+    pub(crate) fn line(&mut self, line: impl Into<String>) -> &mut Self {
+        self.add(line, Value::Line)
     }
 
     /// With four significant digits and at least four decimals: more is not known of any of them.

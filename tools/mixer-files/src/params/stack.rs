@@ -11,13 +11,16 @@ pub enum Stack {
     Px4,
     /// ArduPilot's Copter.
     Ardupilot,
+    /// Betaflight.
+    Betaflight,
 }
 
 impl Stack {
     /// All, each with its word on the command line and what it is.
-    pub const ALL: [(Stack, &'static str, &'static str); 2] = [
+    pub const ALL: [(Stack, &'static str, &'static str); 3] = [
         (Stack::Px4, "px4", "PX4 Autopilot"),
         (Stack::Ardupilot, "ardupilot", "ArduPilot's Copter"),
+        (Stack::Betaflight, "betaflight", "Betaflight"),
     ];
 
     /// For people.
@@ -25,6 +28,7 @@ impl Stack {
         match self {
             Stack::Px4 => "PX4",
             Stack::Ardupilot => "ArduPilot",
+            Stack::Betaflight => "Betaflight",
         }
     }
 }

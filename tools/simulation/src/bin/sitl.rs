@@ -1,4 +1,4 @@
-//! Serves PX4 and ArduPilot as their outside simulator.
+//! Serves PX4, ArduPilot and Betaflight as their outside simulator.
 
 use std::process::ExitCode;
 

@@ -7,7 +7,7 @@ use mixer_compiler::atmosphere;
 
 use super::plan::Manoeuvre;
 
-/// One vehicle for the simulators of PX4 and ArduPilot
+/// One vehicle for the simulators of PX4, ArduPilot and Betaflight
 ///
 /// The plant is an airframe file: its pair's map at the battery's voltage, rotors that lag, mass and
 /// inertia. The flight stack, unpatched, connects to it by the interface that it has for outside
@@ -15,7 +15,7 @@ use super::plan::Manoeuvre;
 /// allocator and those of this project's mixer fly the same vehicle.
 #[derive(Parser, Debug)]
 #[command(name = "sitl")]
-#[command(group = ArgGroup::new("stack").required(true).args(["px4", "ardupilot"]))]
+#[command(group = ArgGroup::new("stack").required(true).args(["px4", "ardupilot", "betaflight"]))]
 pub struct Arguments {
     /// The airframe file
     pub airframe: PathBuf,
@@ -25,7 +25,10 @@ pub struct Arguments {
     /// Serve ArduPilot: JSON over UDP, `--model JSON`
     #[arg(long)]
     pub ardupilot: bool,
-    /// Fly a manoeuvre by MAVLink: PX4 in Offboard, ArduPilot in Guided
+    /// Serve Betaflight: its packets over UDP, in real time
+    #[arg(long)]
+    pub betaflight: bool,
+    /// Fly a manoeuvre: PX4 in Offboard and ArduPilot in Guided by MAVLink, Betaflight in acro mode by sticks
     #[arg(long, value_enum)]
     pub fly: Option<Manoeuvre>,
     /// Write the true flight as CSV
@@ -71,16 +74,16 @@ pub struct Arguments {
     /// Moments of inertia, kg m2, instead of the file's
     #[arg(long, value_name = "X,Y,Z", value_parser = inertia)]
     pub inertia: Option<[f64; 3]>,
-    /// Pulse widths of throttle 0 and 1 in ArduPilot, MOT_PWM_MIN and MOT_PWM_MAX
+    /// Pulse widths of throttle 0 and 1 in ArduPilot, MOT_PWM_MIN and MOT_PWM_MAX, or Betaflight
     #[arg(long, value_name = "LOW,HIGH", default_value = "1000,2000", value_parser = pulses)]
     pub pwm_range: [f64; 2],
-    /// Port to serve: 4560 plus PX4's instance, 9002 for ArduPilot; 0 takes a free one
+    /// Port to serve: 4560 plus PX4's instance, 9002 for ArduPilot, 9001 for Betaflight; 0 takes a free one
     #[arg(long)]
     pub port: Option<u16>,
     /// Port of the MAVLink for pilot and battery: 14540 plus PX4's instance, 5760 of ArduPilot
     #[arg(long)]
     pub link: Option<u16>,
-    /// Simulated over real time, at most; 0 is as fast as the stack goes
+    /// Simulated over real time, at most, and 1 for Betaflight; 0 is as fast as the stack goes
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = not_negative)]
     pub speed: f64,
     /// End after so much simulated time, s

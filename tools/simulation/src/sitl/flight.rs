@@ -18,13 +18,13 @@ pub enum End {
     Crashed(f64),
 }
 
-/// A flight under way, the same for both stacks.
+/// A flight under way, the same for all stacks.
 #[derive(Debug)]
 pub struct Flight {
     /// The vehicle in its place.
     pub world: World,
     /// The pilot, or who feeds PX4's battery.
-    pub pilot: Option<Pilot>,
+    pub pilot: Option<Box<dyn Pilot>>,
     /// The record.
     pub record: Record,
     /// Time of the manoeuvre, or without one of the simulation, at which a rotor stopped, s.
@@ -37,7 +37,7 @@ pub struct Flight {
 
 impl Flight {
     /// A flight that begins on the ground.
-    pub fn new(vehicle: Vehicle, pilot: Option<Pilot>, arguments: &Arguments) -> Flight {
+    pub fn new(vehicle: Vehicle, pilot: Option<Box<dyn Pilot>>, arguments: &Arguments) -> Flight {
         let stops_by_itself = arguments.fly == Some(Manoeuvre::Failure);
         let failure = arguments.fail.or(stops_by_itself.then_some(Failure {
             output: 0,
@@ -67,7 +67,7 @@ impl Flight {
             pilot.update(&self.world)?;
         }
         self.fail(time_s);
-        self.record.take(&self.world, self.pilot.as_ref(), throttles);
+        self.record.take(&self.world, self.pilot.as_deref(), throttles);
         if let Some(crashed_s) = self.world.crashed_s {
             return Ok(Some(End::Crashed(crashed_s)));
         }

@@ -1,4 +1,6 @@
-//! The pilot: arms, takes off and flies a manoeuvre by MAVLink, as a ground station would.
+//! Who flies: arms, takes off and flies a manoeuvre; by MAVLink, as a ground station would.
+
+use std::fmt;
 
 use mavlink::dialects::common::{
     ATTITUDE_TARGET_DATA, COMMAND_ACK_DATA, COMMAND_LONG_DATA, MavAutopilot, MavCmd, MavMessage, MavModeFlag,
@@ -9,6 +11,7 @@ use super::arguments::Arguments;
 use super::link::Link;
 use super::messages::{BATTERY, Texts, attitude, battery, heartbeat, position};
 use super::plan::{Manoeuvre, Plan, Target};
+use super::sticks::Channels;
 use super::world::World;
 
 /// The flight stack.
@@ -68,7 +71,7 @@ impl Stack {
 
 /// Where the flight is.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Phase {
+pub enum Phase {
     /// Until the motors are armed.
     Arming,
     /// Until the vehicle hovers; still since.
@@ -77,9 +80,72 @@ enum Phase {
     Flying(f64),
 }
 
-/// The pilot of a stack.
+/// The phase after a moment of the climb, still since a time: the manoeuvre, once the vehicle hovers above a height.
+pub fn climbed(still_since_s: Option<f64>, least_m: f64, world: &World) -> Phase {
+    let (time_s, height_m) = (world.time_s(), -world.state.position.z);
+    let is_still = height_m > least_m && world.state.velocity.norm() < STILL_M_S;
+    let still_since_s = is_still.then(|| still_since_s.unwrap_or(time_s));
+    if still_since_s.is_some_and(|since_s| time_s - since_s > STILL_S) {
+        eprintln!("{time_s:8.2} s  hovers at {height_m:.2} m");
+        return Phase::Flying(time_s);
+    }
+    Phase::Climbing(still_since_s)
+}
+
+/// Who flies.
+pub trait Pilot: fmt::Debug {
+    /// Looks, and does what is due.
+    ///
+    /// # Errors
+    /// A vehicle that does not hover in time; with what the stack has said last.
+    fn update(&mut self, world: &World) -> Result<(), String>;
+
+    /// The manoeuvre; `None` where none is flown.
+    fn plan(&self) -> Option<&Plan>;
+
+    /// Where the flight is.
+    fn phase(&self) -> Phase;
+
+    /// The thrust setpoint that the stack has reported last, or the throttle stick, 0 to 1; NaN before.
+    fn thrust_setpoint(&self) -> f64;
+
+    /// Connects where that is to be done before the stack starts.
+    fn connect(&mut self) {}
+
+    /// Tells the stack's simulated telemetry that a rotor has stopped.
+    fn inject(&mut self, _output: usize) {}
+
+    /// The sticks, where the pilot has some.
+    fn sticks(&self) -> Channels {
+        [1500; 16]
+    }
+
+    /// Time of the manoeuvre, s; `None` before.
+    fn manoeuvre_s(&self, time_s: f64) -> Option<f64> {
+        match self.phase() {
+            Phase::Flying(since_s) => Some(time_s - since_s),
+            _ => None,
+        }
+    }
+
+    /// The target at a time of the simulation.
+    fn wanted(&self, time_s: f64) -> Option<Target> {
+        let manoeuvre_s = self.manoeuvre_s(time_s)?;
+        self.plan().map(|plan| plan.target(manoeuvre_s))
+    }
+
+    /// Whether the manoeuvre is over.
+    fn is_done(&self, time_s: f64) -> bool {
+        let end_s = self.plan().map(|plan| plan.end_s);
+        self.manoeuvre_s(time_s)
+            .zip(end_s)
+            .is_some_and(|(now_s, end_s)| now_s >= end_s)
+    }
+}
+
+/// A pilot by MAVLink.
 #[derive(Debug)]
-pub struct Pilot {
+pub struct Station {
     stack: Stack,
     link: Link,
     plan: Option<Plan>,
@@ -109,10 +175,10 @@ fn is_due(next_s: &mut f64, time_s: f64, period_s: f64) -> bool {
     is_due
 }
 
-impl Pilot {
+impl Station {
     /// A pilot on a link.
-    pub fn new(stack: Stack, link: Link, arguments: &Arguments) -> Pilot {
-        Pilot {
+    pub fn new(stack: Stack, link: Link, arguments: &Arguments) -> Station {
+        Station {
             stack,
             link,
             plan: arguments.fly.map(Manoeuvre::plan),
@@ -130,70 +196,6 @@ impl Pilot {
             texts: Texts::default(),
             told: String::new(),
         }
-    }
-
-    /// Connects where that is to be done before the stack starts.
-    pub fn connect(&mut self) {
-        self.link.connect();
-    }
-
-    /// The thrust setpoint that the stack has reported last, 0 to 1; NaN before.
-    pub fn thrust_setpoint(&self) -> f64 {
-        self.thrust_setpoint
-    }
-
-    /// Time of the manoeuvre, s; `None` before.
-    pub fn manoeuvre_s(&self, time_s: f64) -> Option<f64> {
-        match self.phase {
-            Phase::Flying(since_s) => Some(time_s - since_s),
-            _ => None,
-        }
-    }
-
-    /// The manoeuvre; `None` where none is flown.
-    pub fn plan(&self) -> Option<&Plan> {
-        self.plan.as_ref()
-    }
-
-    /// The target at a time of the simulation.
-    pub fn wanted(&self, time_s: f64) -> Option<Target> {
-        let manoeuvre_s = self.manoeuvre_s(time_s)?;
-        self.plan.as_ref().map(|plan| plan.target(manoeuvre_s))
-    }
-
-    /// Whether the manoeuvre is over.
-    pub fn is_done(&self, time_s: f64) -> bool {
-        let end_s = self.plan.as_ref().map(|plan| plan.end_s);
-        self.manoeuvre_s(time_s)
-            .zip(end_s)
-            .is_some_and(|(now_s, end_s)| now_s >= end_s)
-    }
-
-    /// Listens, and does what is due.
-    ///
-    /// # Errors
-    /// A vehicle that does not hover in time; with what the stack has said last.
-    pub fn update(&mut self, world: &World) -> Result<(), String> {
-        let time_s = world.time_s();
-        self.link.connect();
-        for (header, message) in self.link.receive() {
-            self.hear(header.system_id as u8, header.component_id, message, time_s);
-        }
-        let Some((peer, since_s)) = self.peer else {
-            return Ok(());
-        };
-        if is_due(&mut self.heartbeat_s, time_s, HEARTBEAT_S) {
-            self.link.send(&heartbeat());
-            let parameters = [ATTITUDE_TARGET, ATTITUDE_TARGET_US];
-            self.command(peer, MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL, parameters);
-        }
-        if self.stack == Stack::Px4 && is_due(&mut self.battery_s, time_s, BATTERY_S) {
-            self.link.send_as([peer[0], BATTERY], &battery(world));
-        }
-        if self.plan.is_none() {
-            return Ok(());
-        }
-        self.fly(world, peer, time_s, since_s)
     }
 
     fn hear(&mut self, system: u8, component: u8, message: MavMessage, time_s: f64) {
@@ -233,16 +235,7 @@ impl Pilot {
         }
     }
 
-    /// Tells PX4's simulated telemetry that a rotor has stopped: it makes up the motors' currents.
-    pub fn inject(&mut self, output: usize) {
-        if let (Stack::Px4, Some((peer, _))) = (self.stack, self.peer) {
-            let motor = output as f32 + 1.0;
-            self.command(peer, MavCmd::MAV_CMD_INJECT_FAILURE, [MOTOR, STUCK, motor]);
-        }
-    }
-
     fn fly(&mut self, world: &World, peer: [u8; 2], time_s: f64, since_s: f64) -> Result<(), String> {
-        let height_m = -world.state.position.z;
         let wait_s = match self.stack {
             Stack::Ardupilot if !self.uses_gps => GPS_S,
             _ => TARGETS_FIRST_S,
@@ -256,13 +249,8 @@ impl Pilot {
                 }
             }
             Phase::Climbing(still_since_s) => {
-                let is_still = height_m > 0.5 * self.height_m && world.state.velocity.norm() < STILL_M_S;
-                let still_since_s = is_still.then(|| still_since_s.unwrap_or(time_s));
-                self.phase = Phase::Climbing(still_since_s);
-                if still_since_s.is_some_and(|since_s| time_s - since_s > STILL_S) {
-                    eprintln!("{time_s:8.2} s  hovers at {height_m:.2} m");
-                    self.phase = Phase::Flying(time_s);
-                } else if world.on_ground && is_due(&mut self.command_s, time_s, COMMAND_S) {
+                self.phase = climbed(still_since_s, 0.5 * self.height_m, world);
+                if world.on_ground && is_due(&mut self.command_s, time_s, COMMAND_S) {
                     match self.stack {
                         _ if !self.armed => self.phase = Phase::Arming,
                         Stack::Ardupilot => {
@@ -357,5 +345,54 @@ impl Pilot {
             target_component,
             confirmation: 0,
         }));
+    }
+}
+
+impl Pilot for Station {
+    fn update(&mut self, world: &World) -> Result<(), String> {
+        let time_s = world.time_s();
+        self.link.connect();
+        for (header, message) in self.link.receive() {
+            self.hear(header.system_id as u8, header.component_id, message, time_s);
+        }
+        let Some((peer, since_s)) = self.peer else {
+            return Ok(());
+        };
+        if is_due(&mut self.heartbeat_s, time_s, HEARTBEAT_S) {
+            self.link.send(&heartbeat());
+            let parameters = [ATTITUDE_TARGET, ATTITUDE_TARGET_US];
+            self.command(peer, MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL, parameters);
+        }
+        if self.stack == Stack::Px4 && is_due(&mut self.battery_s, time_s, BATTERY_S) {
+            self.link.send_as([peer[0], BATTERY], &battery(world));
+        }
+        if self.plan.is_none() {
+            return Ok(());
+        }
+        self.fly(world, peer, time_s, since_s)
+    }
+
+    fn plan(&self) -> Option<&Plan> {
+        self.plan.as_ref()
+    }
+
+    fn phase(&self) -> Phase {
+        self.phase
+    }
+
+    fn thrust_setpoint(&self) -> f64 {
+        self.thrust_setpoint
+    }
+
+    fn connect(&mut self) {
+        self.link.connect();
+    }
+
+    /// PX4's telemetry makes up the motors' currents.
+    fn inject(&mut self, output: usize) {
+        if let (Stack::Px4, Some((peer, _))) = (self.stack, self.peer) {
+            let motor = output as f32 + 1.0;
+            self.command(peer, MavCmd::MAV_CMD_INJECT_FAILURE, [MOTOR, STUCK, motor]);
+        }
     }
 }

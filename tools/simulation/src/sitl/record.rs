@@ -55,7 +55,7 @@ pub struct Record {
 
 impl Record {
     /// Takes a sample where one is due.
-    pub fn take(&mut self, world: &World, pilot: Option<&Pilot>, command: &Throttles) {
+    pub fn take(&mut self, world: &World, pilot: Option<&dyn Pilot>, command: &Throttles) {
         if world.time_us < self.next_us {
             return;
         }
@@ -72,7 +72,7 @@ impl Record {
             thrust_n: world.thrust_n(),
             voltage_v: world.voltage_v(),
             current_a: world.current_a(),
-            thrust_setpoint: pilot.map_or(f64::NAN, Pilot::thrust_setpoint),
+            thrust_setpoint: pilot.map_or(f64::NAN, |pilot| pilot.thrust_setpoint()),
             throttles: command.as_slice()[..world.vehicle.rotors].to_vec(),
         });
     }

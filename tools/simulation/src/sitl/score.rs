@@ -6,7 +6,6 @@
 use std::fmt;
 
 use super::flight::Flight;
-use super::pilot::Pilot;
 use super::plan::{FIRST_S, Plan, Target};
 use super::record::{Record, Sample};
 use crate::state::wrapped;
@@ -71,6 +70,8 @@ pub struct Score {
     pub rows: Vec<Row>,
     /// `None` where no rotor stopped, or the flight ended at once.
     pub failure: Option<AfterFailure>,
+    /// Thrust over the first seconds of all steps in heading, against that of the second before: mean, rms, most and least, %.
+    pub thrust_percent: Option<[f64; 4]>,
 }
 
 impl Score {
@@ -82,8 +83,9 @@ impl Score {
             hover: None,
             rows: Vec::new(),
             failure: None,
+            thrust_percent: None,
         };
-        let Some(plan) = flight.pilot.as_ref().and_then(Pilot::plan) else {
+        let Some(plan) = flight.pilot.as_ref().and_then(|pilot| pilot.plan()) else {
             return score;
         };
         let flown = Flown(&flight.record);
@@ -103,6 +105,15 @@ impl Score {
                 None => score.rows.push((name, vec![step])),
             }
         }
+        let turns = plan
+            .steps
+            .windows(2)
+            .filter(|pair| pair[0].1.yaw_deg != pair[1].1.yaw_deg);
+        let first = plan.steps.first().filter(|(_, target)| target.yaw_deg != 0.0);
+        let turns = turns
+            .map(|pair| pair[1].0)
+            .chain(first.map(|(begin_s, _)| *begin_s));
+        score.thrust_percent = flown.thrust_percent(turns);
         score.failure = flight
             .failed_s
             .and_then(|failed_s| flown.after_failure(failed_s, plan));
@@ -221,6 +232,25 @@ impl Flown<'_> {
         ])
     }
 
+    fn thrust_percent(&self, begins: impl Iterator<Item = f64>) -> Option<[f64; 4]> {
+        let errors = begins.flat_map(|begin_s| {
+            let before = self.mean(begin_s - BEFORE_S, begin_s, |sample| sample.thrust_n);
+            let after = self
+                .between(begin_s, begin_s + RMS_S)
+                .map(|(_, sample)| sample.thrust_n);
+            after.filter_map(move |thrust_n| Some(100.0 * (thrust_n / before? - 1.0)))
+        });
+        let errors: Vec<f64> = errors.collect();
+        let least = -most(errors.iter().map(|error| -error));
+        let rms = mean(errors.iter().map(|error| error * error))?.sqrt();
+        Some([
+            mean(errors.iter().copied())?,
+            rms,
+            most(errors.iter().copied()),
+            least,
+        ])
+    }
+
     fn after_failure(&self, failed_s: f64, plan: &Plan) -> Option<AfterFailure> {
         let mut begins = plan.steps.iter().map(|(begin_s, _)| *begin_s);
         let next = begins.find(|begin_s| *begin_s > failed_s + 0.1);
@@ -276,6 +306,12 @@ impl fmt::Display for Score {
                 f,
                 "after the rotor has stopped: roll or pitch {:.2} deg, yaw {:.2} deg, height {:.3} m at most",
                 failure.tilt_deg, failure.yaw_deg, failure.height_m
+            )?;
+        }
+        if let Some([mean, rms, most, least]) = self.thrust_percent {
+            writeln!(
+                f,
+                "thrust over {RMS_S} s of turning, against the second before: {mean:+.2} % in the mean, {rms:.2} % rms, {least:+.1} to {most:+.1} %"
             )?;
         }
         if self.rows.is_empty() {

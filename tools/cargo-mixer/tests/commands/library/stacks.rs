@@ -1,4 +1,4 @@
-//! `examples/px4` and `examples/ardupilot`, compiled against the declarations in `stand_ins` and
+//! `examples/px4`, `examples/ardupilot` and `examples/betaflight`, compiled against the declarations in `stand_ins` and
 //! driven once.
 
 use std::fs;
@@ -81,6 +81,32 @@ const ARDUPILOT: Stack = Stack {
     ],
 };
 
+const BETAFLIGHT: Stack = Stack {
+    name: "betaflight",
+    headers: &[
+        "platform.h",
+        "common/filter.h",
+        "common/maths.h",
+        "config/config.h",
+        "drivers/dshot.h",
+        "drivers/motor.h",
+        "fc/runtime_config.h",
+        "flight/isae_x8.h",
+        "flight/mixer.h",
+        "flight/mixer_coaxial.h",
+        "flight/mixer_init.h",
+        "flight/pid.h",
+        "pg/motor.h",
+        "sensors/barometer.h",
+        "sensors/battery.h",
+        "sensors/sensors.h",
+    ],
+    declarations: "betaflight.h",
+    folder: "examples/betaflight",
+    source: "mixer_coaxial.c",
+    flags: &[&["-std=gnu++20"]],
+};
+
 impl Stack {
     fn drive(&self) {
         let folder = Folder::new(self.name);
@@ -119,6 +145,11 @@ impl Stack {
 #[test]
 fn the_px4_module_publishes_what_the_library_mixes() {
     PX4.drive();
+}
+
+#[test]
+fn betaflights_motors_are_what_the_library_mixes() {
+    BETAFLIGHT.drive();
 }
 
 #[test]
