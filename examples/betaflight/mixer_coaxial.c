@@ -168,6 +168,13 @@ static uint64_t stoppedMotors(void)
 
 float coaxialMixerApply(float roll, float pitch, float yaw, float throttle, bool isAirmode)
 {
+    // What the mixer's least throttle, which is motor_idle, and throttle 1 are as DShot or in microseconds. They hold for a flight: a
+    // profile that is chosen in it may have another limit.
+    static float low, high;
+    if (!ARMING_FLAG(ARMED)) {
+        low = mixerRuntime.motorOutputLow;
+        high = mixerRuntime.motorOutputHigh;
+    }
     updateConditions();
     // Without airmode Betaflight leaves half of the authority at throttle 0, all of it from half throttle on.
     const float authority = isAirmode ? 1.0f : MIN(0.5f + throttle, 1.0f);
@@ -188,9 +195,7 @@ float coaxialMixerApply(float roll, float pitch, float yaw, float throttle, bool
 #endif
     // A setpoint that is not finite leaves the motors as they are.
     if (status == MIXER_OK) {
-        // Of the mixer's throttle, of which motor_idle is the least, as DShot or in microseconds.
-        const float low = mixerRuntime.motorOutputLow;
-        const float perThrottle = (mixerRuntime.motorOutputHigh - low) / (1.0f - ISAE_X8_THROTTLE_MIN);
+        const float perThrottle = (high - low) / (1.0f - ISAE_X8_THROTTLE_MIN);
         for (int i = 0; i < ISAE_X8_CHANNELS; i++) {
             const float driven = low + (mix.throttle[i] - ISAE_X8_THROTTLE_MIN) * perThrottle;
             motor[i] = mix.throttle[i] > 0.0f ? driven : mixerRuntime.disarmMotorOutput;

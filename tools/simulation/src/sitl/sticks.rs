@@ -10,7 +10,7 @@ use super::world::World;
 use crate::state::wrapped;
 use crate::vehicle::GRAVITY_M_S2;
 
-/// Pulse widths of the channels, us: roll, pitch, throttle, yaw, the switch of arming, others.
+/// Pulse widths of the channels, us: roll, pitch, throttle, yaw, the switches of arming and of altitude hold, others.
 pub type Channels = [u16; 16];
 
 /// Rates of the full sticks, degrees/s: `examples/betaflight/simulator.txt` has them.
@@ -28,7 +28,7 @@ const PATIENCE_S: f64 = 60.0;
 const HEIGHT_M: f64 = 20.0;
 
 /// Time of a step in heading, roll or failure for which the throttle is left alone, s.
-pub const CONSTANT_S: f64 = 3.0;
+const CONSTANT_S: f64 = 3.0;
 
 /// Gains: acceleration per error of place and of speed, and of the height's integral; rate per error of attitude.
 const PLACE: f64 = 1.0;
@@ -48,6 +48,7 @@ pub struct Sticks {
     /// Stick of the hover, as far as it is known, and its error.
     hover: f64,
     trim: f64,
+    /// When it last looked, s.
     updated_s: f64,
     throttle: f64,
     /// Of the full stick: roll, pitch, yaw.
@@ -70,6 +71,12 @@ impl Sticks {
         }
     }
 
+    /// Whether Betaflight holds the altitude: in the manoeuvre without steps.
+    fn is_held(&self) -> bool {
+        let has_steps = self.plan.as_ref().is_none_or(|plan| !plan.steps.is_empty());
+        !has_steps && matches!(self.phase, Phase::Flying(_))
+    }
+
     /// Whether the throttle is left alone: in the first seconds of a step that is not in height or place.
     fn is_constant(&self, time_s: f64) -> bool {
         let (Some(now_s), Some(plan)) = (self.manoeuvre_s(time_s), &self.plan) else {
@@ -78,7 +85,7 @@ impl Sticks {
         let places = plan.steps.iter().map(|(_, target)| target.offset);
         let moves = places.clone().any(|place| place != Vector3::zeros());
         let mut begins = plan.steps.iter().map(|(begin_s, _)| *begin_s);
-        !moves && begins.any(|begin_s| (begin_s..begin_s + CONSTANT_S).contains(&now_s))
+        self.is_held() || !moves && begins.any(|begin_s| (begin_s..begin_s + CONSTANT_S).contains(&now_s))
     }
 
     fn fly(&mut self, world: &World, target: Target, height_m: f64) {
@@ -161,6 +168,10 @@ impl Pilot for Sticks {
         let [roll, pitch, yaw] = self.rates;
         (channels[0], channels[1], channels[3]) = (around(roll), around(-pitch), around(yaw));
         channels[2] = (1000.0 + 1000.0 * self.throttle.clamp(0.0, 1.0)).round() as u16;
+        // Betaflight's altitude hold keeps the height of a hover, level.
+        if self.is_held() {
+            (channels[0], channels[1], channels[3], channels[5]) = (1500, 1500, 1500, 2000);
+        }
         channels[4] = if self.updated_s > ARM_S { 2000 } else { 1000 };
         channels
     }

@@ -113,7 +113,11 @@ int main()
     const float roll = ISAE_X8_BETAFLIGHT_ROLL_NM, pitch = ISAE_X8_BETAFLIGHT_PITCH_NM, yaw = ISAE_X8_BETAFLIGHT_YAW_NM;
     const float e = ISAE_X8_BETAFLIGHT_THRUST_EXPO;
     const float half = (0.5f * (1.0f - e) + 0.25f * e) * ISAE_X8_BETAFLIGHT_THRUST_N;
+    coaxialMixerApply(0.0f, 0.0f, 0.0f, 0.0f, true);
     armingFlags = ARMED;
+    // A profile that is chosen in flight.
+    mixerRuntime.motorOutputLow = 1048.0f;
+    mixerRuntime.motorOutputHigh = 1900.0f;
     check(coaxialMixerApply(0.05f, 0.04f, 0.1f, 0.5f, true) == 0.0f, "nothing is short");
     check(mixes({ 0.05f * roll, -0.04f * pitch, 0.1f * yaw, half }, 0), "a setpoint");
     mixer.yaw_motors_reversed = true;
