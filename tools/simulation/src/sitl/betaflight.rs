@@ -6,8 +6,8 @@ use std::net::{Ipv4Addr, TcpStream, UdpSocket};
 use std::time::{Duration, Instant};
 
 use super::flight::{End, Flight};
+use super::pilot::Channels;
 use super::sensors::Sensors;
-use super::sticks::Channels;
 use super::vehicle::{MOST_ROTORS, Throttles};
 use super::world::World;
 

@@ -11,7 +11,6 @@ use super::arguments::Arguments;
 use super::link::Link;
 use super::messages::{BATTERY, Texts, attitude, battery, heartbeat, position};
 use super::plan::{Manoeuvre, Plan, Target};
-use super::sticks::Channels;
 use super::world::World;
 
 /// The flight stack.
@@ -91,6 +90,9 @@ pub fn climbed(still_since_s: Option<f64>, least_m: f64, world: &World) -> Phase
     }
     Phase::Climbing(still_since_s)
 }
+
+/// Pulse widths of the channels, us: roll, pitch, throttle, yaw, the switches of arming and of altitude hold, others.
+pub type Channels = [u16; 16];
 
 /// Who flies.
 pub trait Pilot: fmt::Debug {

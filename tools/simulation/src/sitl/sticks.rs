@@ -4,14 +4,11 @@
 use nalgebra::Vector3;
 
 use super::arguments::Arguments;
-use super::pilot::{Phase, Pilot, climbed};
+use super::pilot::{Channels, Phase, Pilot, climbed};
 use super::plan::{Manoeuvre, Plan, Target};
 use super::world::World;
 use crate::state::wrapped;
 use crate::vehicle::GRAVITY_M_S2;
-
-/// Pulse widths of the channels, us: roll, pitch, throttle, yaw, the switches of arming and of altitude hold, others.
-pub type Channels = [u16; 16];
 
 /// Rates of the full sticks, degrees/s: `examples/betaflight/simulator.txt` has them.
 const RATES_DEG_S: [f64; 3] = [400.0, 400.0, 200.0];
