@@ -48,7 +48,7 @@ pub(crate) fn module(compiled: &Compiled) -> TokenStream {
             pub const SCALE: rt::Wrench = #scale;
             #ardupilot_doc
             pub const ARDUPILOT_SCALE: rt::Wrench = #ardupilot_scale;
-            /// What PID sums of 1000 ask Betaflight for, and the thrust of its full throttle stick.
+            /// Torques of PID sums of 1000 in Betaflight, and the thrust of its full throttle stick.
             pub const BETAFLIGHT_SCALE: rt::Wrench = #betaflight_scale;
             /// e of Betaflight's throttle stick: (1 - e) throttle + e throttle^2 of that thrust.
             pub const BETAFLIGHT_EXPO: f32 = #betaflight_expo;

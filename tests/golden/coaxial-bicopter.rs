@@ -37,7 +37,7 @@ pub mod coaxial_bicopter {
         yaw_nm: 0.54054165,
         thrust_n: 61.887005,
     };
-    /// What PID sums of 1000 ask Betaflight for, and the thrust of its full throttle stick.
+    /// Torques of PID sums of 1000 in Betaflight, and the thrust of its full throttle stick.
     pub const BETAFLIGHT_SCALE: rt::Wrench = rt::Wrench {
         roll_nm: 22.30893,
         pitch_nm: 0.0,

@@ -39,7 +39,7 @@ pub mod isae_x8 {
         yaw_nm: 1.0810833,
         thrust_n: 123.77401,
     };
-    /// What PID sums of 1000 ask Betaflight for, and the thrust of its full throttle stick.
+    /// Torques of PID sums of 1000 in Betaflight, and the thrust of its full throttle stick.
     pub const BETAFLIGHT_SCALE: rt::Wrench = rt::Wrench {
         roll_nm: 31.549784,
         pitch_nm: 31.549784,

@@ -41,7 +41,7 @@ pub mod px4_x12 {
         yaw_nm: 1.621625,
         thrust_n: 185.66101,
     };
-    /// What PID sums of 1000 ask Betaflight for, and the thrust of its full throttle stick.
+    /// Torques of PID sums of 1000 in Betaflight, and the thrust of its full throttle stick.
     pub const BETAFLIGHT_SCALE: rt::Wrench = rt::Wrench {
         roll_nm: 74.3631,
         pitch_nm: 85.86707,

@@ -38,7 +38,7 @@ pub mod px4_y6 {
         yaw_nm: 0.8108125,
         thrust_n: 92.830505,
     };
-    /// What PID sums of 1000 ask Betaflight for, and the thrust of its full throttle stick.
+    /// Torques of PID sums of 1000 in Betaflight, and the thrust of its full throttle stick.
     pub const BETAFLIGHT_SCALE: rt::Wrench = rt::Wrench {
         roll_nm: 21.466148,
         pitch_nm: 24.7877,

@@ -36,7 +36,7 @@ pub mod single_pair {
         yaw_nm: 0.216504,
         thrust_n: 24.7877,
     };
-    /// What PID sums of 1000 ask Betaflight for, and the thrust of its full throttle stick.
+    /// Torques of PID sums of 1000 in Betaflight, and the thrust of its full throttle stick.
     pub const BETAFLIGHT_SCALE: rt::Wrench = rt::Wrench {
         roll_nm: 0.0,
         pitch_nm: 0.0,

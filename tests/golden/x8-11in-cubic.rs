@@ -39,7 +39,7 @@ pub mod x8_11in_cubic {
         yaw_nm: 0.7636738,
         thrust_n: 72.07794,
     };
-    /// What PID sums of 1000 ask Betaflight for, and the thrust of its full throttle stick.
+    /// Torques of PID sums of 1000 in Betaflight, and the thrust of its full throttle stick.
     pub const BETAFLIGHT_SCALE: rt::Wrench = rt::Wrench {
         roll_nm: 15.29004,
         pitch_nm: 15.29004,

@@ -39,7 +39,7 @@ pub mod x8_11in_least_power {
         yaw_nm: 1.1727917,
         thrust_n: 107.32853,
     };
-    /// What PID sums of 1000 ask Betaflight for, and the thrust of its full throttle stick.
+    /// Torques of PID sums of 1000 in Betaflight, and the thrust of its full throttle stick.
     pub const BETAFLIGHT_SCALE: rt::Wrench = rt::Wrench {
         roll_nm: 19.733097,
         pitch_nm: 19.733097,

@@ -39,7 +39,7 @@ pub mod x8_16in_biquadratic {
         yaw_nm: 2.1100316,
         thrust_n: 168.08395,
     };
-    /// What PID sums of 1000 ask Betaflight for, and the thrust of its full throttle stick.
+    /// Torques of PID sums of 1000 in Betaflight, and the thrust of its full throttle stick.
     pub const BETAFLIGHT_SCALE: rt::Wrench = rt::Wrench {
         roll_nm: 53.483986,
         pitch_nm: 53.483986,

@@ -39,7 +39,7 @@ pub mod x8_16in_quartic {
         yaw_nm: 1.8788425,
         thrust_n: 161.10217,
     };
-    /// What PID sums of 1000 ask Betaflight for, and the thrust of its full throttle stick.
+    /// Torques of PID sums of 1000 in Betaflight, and the thrust of its full throttle stick.
     pub const BETAFLIGHT_SCALE: rt::Wrench = rt::Wrench {
         roll_nm: 51.262398,
         pitch_nm: 51.262398,

@@ -39,7 +39,7 @@ pub mod x8_22in_cubic {
         yaw_nm: 3.9760613,
         thrust_n: 234.73984,
     };
-    /// What PID sums of 1000 ask Betaflight for, and the thrust of its full throttle stick.
+    /// Torques of PID sums of 1000 in Betaflight, and the thrust of its full throttle stick.
     pub const BETAFLIGHT_SCALE: rt::Wrench = rt::Wrench {
         roll_nm: 99.591675,
         pitch_nm: 99.591675,

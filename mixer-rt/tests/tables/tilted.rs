@@ -41,7 +41,7 @@ pub mod tilted {
         yaw_nm: 4.0026917,
         thrust_n: 135.78683,
     };
-    /// What PID sums of 1000 ask Betaflight for, and the thrust of its full throttle stick.
+    /// Torques of PID sums of 1000 in Betaflight, and the thrust of its full throttle stick.
     pub const BETAFLIGHT_SCALE: rt::Wrench = rt::Wrench {
         roll_nm: 26.608644,
         pitch_nm: 30.725016,

@@ -37,7 +37,7 @@
     @FACTORS@ \
 }
 
-/* What PID sums of 1000 ask Betaflight for in hover@REFERENCE@, and the thrust of its full throttle stick@FULL@.
+/* Torques of PID sums of 1000 in Betaflight's hover@REFERENCE@, and the thrust of its full throttle stick@FULL@.
  * Less stick has (1 - THRUST_EXPO) stick + THRUST_EXPO stick^2 of it, which in hover is the stick of Betaflight's own mixer. */
 @BETAFLIGHT@#define @PREFIX@_BETAFLIGHT_THRUST_EXPO @EXPO@
 
