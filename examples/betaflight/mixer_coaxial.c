@@ -78,14 +78,6 @@ static bool isFrame(void)
     return true;
 }
 
-#if !defined(SIMULATOR_BUILD) // has no battery
-static bool isVoltageOutside(void)
-{
-    const float voltage = 0.01f * getBatteryVoltageLatest();
-    return ISAE_X8_MAX_V > 0.0f && (voltage * SAME_VOLTAGE < ISAE_X8_MIN_V || voltage > ISAE_X8_MAX_V * SAME_VOLTAGE);
-}
-#endif
-
 const char *coaxialMixerRefusal(void)
 {
     if (!isFrame()) {
@@ -115,8 +107,9 @@ const char *coaxialMixerRefusal(void)
     if (mixerRuntime.feature3dEnabled) {
         return "3D";
     }
-#if !defined(SIMULATOR_BUILD)
-    if (isVoltageOutside()) {
+#if !defined(SIMULATOR_BUILD) // has no battery
+    const float voltage = 0.01f * getBatteryVoltageLatest();
+    if (ISAE_X8_MAX_V > 0.0f && (voltage * SAME_VOLTAGE < ISAE_X8_MIN_V || voltage > ISAE_X8_MAX_V * SAME_VOLTAGE)) {
         return "VBAT_RANGE";
     }
 #endif

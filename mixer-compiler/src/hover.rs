@@ -171,12 +171,9 @@ fn limits(compiled: &Compiled) -> Option<Diagnostic> {
     let (min, max) = (airframe.throttle.min, airframe.throttle.max);
     let reference_v = airframe.voltage.as_ref().map(|voltage| voltage.reference);
     let at = HoverAt::new(compiled, airframe.weight_n()?, reference_v);
-    let layers = [
-        (at.upper_throttle?, at.upper_outputs?),
-        (at.lower_throttle?, at.lower_outputs?),
-    ];
     let room = NEXT_TO * (max - min);
-    let ends = layers
+    let ends = at
+        .layers()?
         .into_iter()
         .flat_map(|([least, greatest], [lowest, highest])| {
             let idle = (least - min < room).then_some(("idle", min, least, lowest));
@@ -223,6 +220,15 @@ fn margins(compiled: &Compiled) -> Vec<Diagnostic> {
 }
 
 impl HoverAt {
+    /// Least and greatest throttle of the upper and of the lower rotors, each with its outputs; `None` where the weight is not
+    /// carried.
+    pub fn layers(&self) -> Option<[([f64; 2], [usize; 2]); 2]> {
+        Some([
+            (self.upper_throttle?, self.upper_outputs?),
+            (self.lower_throttle?, self.lower_outputs?),
+        ])
+    }
+
     /// What is left beside a thrust of `weight_n` N at a voltage, V; any where the airframe ignores
     /// it.
     pub fn new(compiled: &Compiled, weight_n: f64, voltage_v: Option<f64>) -> Self {

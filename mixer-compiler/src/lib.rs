@@ -233,6 +233,12 @@ impl Compiled {
         self.rotors(self.airframe.reference_v()).hover_throttle()
     }
 
+    /// Slope in hover at the reference voltage of the share of the largest thrust over the throttle, both rotors alike: what
+    /// a stack's loop gain is multiplied by that takes the one for the other. `None` without a hover.
+    pub fn slope_in_hover(&self) -> Option<f64> {
+        self.rotors(self.airframe.reference_v()).slope_in_hover()
+    }
+
     fn rotors(&self, voltage_v: f64) -> scale::Rotors<'_> {
         scale::Rotors {
             airframe: &self.airframe,

@@ -159,12 +159,9 @@ impl Rotors<'_> {
     pub(crate) fn betaflight(&self) -> Wrench {
         let columns = self.columns();
         let axes = &self.airframe.allocation.axes;
-        let [min, max] = self.pair.range();
-        // Of the share of the largest thrust over Betaflight's output; 1 without a hover.
-        let slope = self.hover_throttle().map_or(1.0, |h| {
-            let [[f_u, f_l], _] = self.pair.jacobian([h, h]);
-            (1.0 - min) * (f_u + f_l) / self.pair.efforts([max, max])[0]
-        });
+        let min = self.pair.range()[0];
+        // Over Betaflight's output, which begins at idle; 1 without a hover.
+        let slope = self.slope_in_hover().map_or(1.0, |slope| (1.0 - min) * slope);
         Wrench::from_array(Axis::ALL.map(|axis| {
             let row = axes.iter().position(|served| *served == axis);
             row.filter(|_| axis != Axis::Thrust).map_or(0.0, |row| {
@@ -256,6 +253,15 @@ impl Rotors<'_> {
             None => self.pair.efforts([min, max])[1] - self.pair.efforts([max, min])[1],
         };
         [0.5 * full * k_f, 0.5 * torque * k_q]
+    }
+
+    /// Slope in hover of the share of the largest thrust over the throttle, both rotors alike: what a stack's loop gain is
+    /// multiplied by that takes the one for the other. `None` without a hover.
+    pub(crate) fn slope_in_hover(&self) -> Option<f64> {
+        let h = self.hover_throttle()?;
+        let [[f_u, f_l], _] = self.pair.jacobian([h, h]);
+        let max = self.pair.range()[1];
+        Some((f_u + f_l) / self.pair.efforts([max, max])[0])
     }
 
     /// Throttle of all rotors that carries the weight; `None` without a mass, or where none does.

@@ -222,12 +222,7 @@ fn hover(list: &mut List, compiled: &Compiled) {
         .in_verdict();
     for (at, name) in hover.at.iter().rev().zip(["hover", "hover, lowest V"]) {
         let volts = or_nothing(at.voltage_v, |volts| format!(" at {volts:?} V"));
-        let layers = [
-            (at.upper_throttle, at.upper_outputs),
-            (at.lower_throttle, at.lower_outputs),
-        ];
-        let [Some(upper), Some(lower)] = layers.map(|(throttle, outputs)| Some(layer(throttle?, outputs?)))
-        else {
+        let Some(layers) = at.layers() else {
             let words = format!("the weight is not carried{volts}");
             list.say(name, "", "", words).in_verdict();
             continue;
@@ -243,6 +238,7 @@ fn hover(list: &mut List, compiled: &Compiled) {
         let band = or_nothing(at.throttle_band, |[[low_u, low_l], [u, l]]| {
             format!("; by [pair.uncertainty] {low_u:.3} to {u:.3} upper, {low_l:.3} to {l:.3} lower")
         });
+        let [upper, lower] = layers.map(|(throttle, outputs)| layer(throttle, outputs));
         let words = format!(" throttle of upper, lower rotors{volts}{left}{band}");
         list.say(name, format!("{upper}, {lower}"), "", words)
             .in_verdict();

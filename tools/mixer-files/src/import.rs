@@ -153,8 +153,10 @@ fn read(file: &Source, arm_m: Option<f64>) -> Result<Imported, String> {
         ));
     };
     imported.notes.extend(outputs::order(&parameters));
+    let pulses = outputs::own_pulses(&parameters);
     for rotor in &mut imported.rotors {
-        rotor.own.pulses_us = outputs::own_pulses(&parameters, rotor.channel);
+        let own = pulses.iter().find(|(motor, _)| *motor == rotor.channel);
+        rotor.own.pulses_us = own.map(|(_, us)| *us);
     }
     match outputs::pulses(&parameters) {
         Ok(pulses) => imported.pulses = pulses,

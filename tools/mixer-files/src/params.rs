@@ -183,20 +183,15 @@ fn header(compiled: &Compiled, file: &str, options: &Options, notes: &[String]) 
         file,
     );
     if !options.own {
-        let unit = match options.stack {
-            Stack::Px4 => compiled.scale(),
-            Stack::Ardupilot => compiled.ardupilot_scale(),
-            Stack::Betaflight => compiled.betaflight_scale(),
+        let (what, unit) = match options.stack {
+            Stack::Px4 => ("A setpoint of 1", compiled.scale()),
+            Stack::Ardupilot => ("A setpoint of 1", compiled.ardupilot_scale()),
+            Stack::Betaflight => ("A PID sum of 1000, or full stick,", compiled.betaflight_scale()),
         };
         let (roll, pitch, yaw, thrust) = (unit.roll_nm, unit.pitch_nm, unit.yaw_nm, unit.thrust_n);
         let _ = writeln!(
             head,
-            "# {} is {roll:.4} N m roll, {pitch:.4} N m pitch, {yaw:.4} N m yaw, {thrust:.3} N.",
-            if options.stack == Stack::Betaflight {
-                "A PID sum of 1000, or full stick,"
-            } else {
-                "A setpoint of 1"
-            },
+            "# {what} is {roll:.4} N m roll, {pitch:.4} N m pitch, {yaw:.4} N m yaw, {thrust:.3} N.",
         );
     }
     for note in notes {

@@ -38,7 +38,7 @@ def same_parameters(desk, output, words):
     if expected:
         name, content = desk.save(output)
         assert content == expected.encode()
-        assert name.endswith({"p": ".params", "a": ".parm", "b": ".txt"}[output[0]])
+        assert name.endswith({"px4": ".params", "ardupilot": ".parm", "betaflight": ".txt"}[output.removesuffix("-own")])
         notes = [f"{name}: {message}" for _, message in told]
     else:
         desk.click(f"[data-output='{output}']")

@@ -57,17 +57,16 @@ pub(super) fn order(parameters: &Parameters) -> Option<String> {
     })
 }
 
-/// Pulse widths of throttle 0 and 1 of one motor's pin, from 0, us; `None` where they are those of all.
-pub(super) fn own_pulses(parameters: &Parameters, motor: usize) -> Option<[f64; 2]> {
-    let mut banks = BANKS.into_iter().filter(|bank| !bank.2.is_empty());
-    banks.find_map(|bank| {
-        let (pin, _) = motors(bank, parameters)
-            .into_iter()
-            .find(|(_, of)| *of == motor)?;
-        let name = numbered(bank.2, pin);
-        let ends = ["MIN", "MAX"].map(|end| parameters.get(&name.replace("{}", end)));
-        Some([ends[0].unwrap_or(USUAL_US[0]), ends[1].unwrap_or(USUAL_US[1])])
+/// Motors, from 0, whose pins have pulses of their own, each with the widths of throttle 0 and 1, us.
+pub(super) fn own_pulses(parameters: &Parameters) -> Vec<(usize, [f64; 2])> {
+    let banks = BANKS.into_iter().filter(|bank| !bank.2.is_empty());
+    let pins = banks.flat_map(|bank| motors(bank, parameters).into_iter().map(move |of| (bank.2, of)));
+    pins.map(|(name, (pin, motor))| {
+        let name = numbered(name, pin);
+        let end = |end: &str, usual: f64| parameters.or(&name.replace("{}", end), usual);
+        (motor, [end("MIN", USUAL_US[0]), end("MAX", USUAL_US[1])])
     })
+    .collect()
 }
 
 /// Whether a parameter says that the motors are driven by DShot: ArduPilot's `MOT_PWM_TYPE` of 4 and more,

@@ -43,7 +43,6 @@ pub(super) fn told(rotors: &[Rotor], units: &[Unit]) -> Result<Vec<String>, Stri
         }
     }
     let first = |k: usize| layers[k].first().map(|rotor| rotor.own);
-    let differ = |a: f64, b: f64| (a - b).abs() > SAME * a.abs().max(b.abs());
     if let (Some(upper), Some(lower)) = (first(0), first(1))
         && (differ(upper.thrust, lower.thrust) || differ(upper.yaw, lower.yaw))
     {
@@ -67,14 +66,14 @@ pub(super) fn told(rotors: &[Rotor], units: &[Unit]) -> Result<Vec<String>, Stri
     Ok(notes)
 }
 
+fn differ(a: f64, b: f64) -> bool {
+    (a - b).abs() > SAME * a.abs().max(b.abs())
+}
+
 /// Two of these rotors whose settings differ.
 fn different<'a>(rotors: &[&'a Rotor], of: fn(&Own) -> f64) -> Option<[&'a Rotor; 2]> {
     let one = rotors.first()?;
-    let (a, size) = (of(&one.own), of(&one.own).abs());
-    let other = rotors.iter().find(|other| {
-        let b = of(&other.own);
-        (a - b).abs() > SAME * size.max(b.abs())
-    })?;
+    let other = rotors.iter().find(|other| differ(of(&one.own), of(&other.own)))?;
     Some([one, other])
 }
 

@@ -4,7 +4,7 @@ use mixer_compiler::airframe::Airmode;
 use mixer_compiler::{ARDUPILOT_MOST_SPIN_MIN as MOST_SPIN_MIN, Compiled};
 
 use crate::params::frames;
-use crate::params::parameter::{Parameters, curve, hundredths, on_curve, rotor_out, slope_in_hover};
+use crate::params::parameter::{Parameters, curve, hundredths, on_curve, rotor_out};
 
 /// ArduPilot's own `MOT_SPIN_ARM`.
 const SPIN_ARM: f64 = 0.1;
@@ -135,7 +135,7 @@ fn hover_throttle(hover: Option<f64>, why: &str, all: &mut Parameters) {
 
 /// The note on gains of a vehicle that was tuned with ArduPilot's mixer.
 fn gains(compiled: &Compiled) -> String {
-    let Some(slope) = slope_in_hover(compiled) else {
+    let Some(slope) = compiled.slope_in_hover() else {
         return "ATC_RAT_RLL_*, _PIT_*, _YAW_*: which factor keeps the loop gain is known with `[vehicle] mass_kg` in the \
                 airframe file; one unit of yaw is then the pair's slope in hover"
             .to_owned();

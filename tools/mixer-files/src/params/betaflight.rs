@@ -112,12 +112,8 @@ fn idle(compiled: &Compiled, all: &mut Parameters) {
 /// Betaflight's hover for altitude hold and rescue; its throttle 1 is a rotor's throttle `full`.
 fn hover(compiled: &Compiled, full: f64, all: &mut Parameters) {
     let min = compiled.airframe.throttle.min;
-    match compiled.equal_hover_throttle() {
-        Some(throttle) => {
-            let hover = (1000.0 + 1000.0 * (throttle - min) / (full - min)).round() as i32;
-            all.because("The throttle of hover at the reference voltage.")
-                .whole("ap_hover_throttle", hover);
-        }
-        None => all.note("ap_hover_throttle is missing: `[vehicle] mass_kg` of the airframe file gives it"),
-    }
+    let hover = compiled.equal_hover_throttle();
+    let hover = hover.map(|throttle| (1000.0 + 1000.0 * (throttle - min) / (full - min)).round());
+    let why = "The throttle of hover at the reference voltage.";
+    all.hover("ap_hover_throttle", hover, why);
 }

@@ -147,14 +147,6 @@ pub(crate) fn rotor_out(name: &str, compiled: &Compiled, all: &mut Parameters) {
     ));
 }
 
-/// Slope in hover of the share of the largest thrust over the throttle, both rotors alike: what a
-/// stack's loop gain is multiplied by that takes the one for the other. `None` without a hover.
-pub(crate) fn slope_in_hover(compiled: &Compiled) -> Option<f64> {
-    let h = compiled.equal_hover_throttle()?;
-    let [[f_u, f_l], _] = compiled.pair.jacobian([h, h]);
-    Some((f_u + f_l) / largest_thrust(compiled))
-}
-
 /// Of one unit at the reference voltage, N.
 pub(crate) fn largest_thrust(compiled: &Compiled) -> f64 {
     let [_, max] = compiled.pair.range();

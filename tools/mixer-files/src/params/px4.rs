@@ -3,7 +3,7 @@
 use mixer_compiler::Compiled;
 use mixer_compiler::airframe::{Correction, Spin};
 
-use crate::params::parameter::{Parameters, curve, hundredths, on_curve, rotor_out, slope_in_hover};
+use crate::params::parameter::{Parameters, curve, hundredths, on_curve, rotor_out};
 
 /// Most rotors that PX4 has parameters for.
 const MOST_ROTORS: usize = 12;
@@ -195,7 +195,7 @@ fn current_tangent(compiled: &Compiled) -> Option<[f64; 2]> {
 
 /// The note on gains of a vehicle that was tuned with PX4's allocator.
 fn gains(compiled: &Compiled) -> String {
-    match slope_in_hover(compiled) {
+    match compiled.slope_in_hover() {
         Some(factor) => format!(
             "MC_ROLLRATE_K, MC_PITCHRATE_K, MC_YAWRATE_K: gains that were tuned with a fitted THR_MDL_FAC stay; those tuned \
              with THR_MDL_FAC 0 are multiplied by {factor:.3}, the slope of thrust over throttle in hover"

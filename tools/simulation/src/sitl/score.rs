@@ -93,10 +93,13 @@ impl Score {
             true => flown.hover(0.0, plan.end_s),
             false => flown.hover(FIRST_S - HOVER_S, FIRST_S),
         };
-        let mut before = Target::default();
+        let (mut before, mut turns) = (Target::default(), Vec::new());
         let ends = plan.steps.iter().skip(1).map(|(begin_s, _)| *begin_s);
         for ((begin_s, target), end_s) in plan.steps.iter().zip(ends.chain([plan.end_s])) {
             let from = std::mem::replace(&mut before, *target);
+            if target.yaw_deg != from.yaw_deg {
+                turns.push(*begin_s);
+            }
             let measured =
                 name(&from, target).zip(flown.step([*begin_s, end_s], &from, target, vehicle.weight_n()));
             let Some((name, step)) = measured else { continue };
@@ -105,15 +108,7 @@ impl Score {
                 None => score.rows.push((name, vec![step])),
             }
         }
-        let turns = plan
-            .steps
-            .windows(2)
-            .filter(|pair| pair[0].1.yaw_deg != pair[1].1.yaw_deg);
-        let first = plan.steps.first().filter(|(_, target)| target.yaw_deg != 0.0);
-        let turns = turns
-            .map(|pair| pair[1].0)
-            .chain(first.map(|(begin_s, _)| *begin_s));
-        score.thrust_percent = flown.thrust_percent(turns);
+        score.thrust_percent = flown.thrust_percent(&turns);
         score.failure = flight
             .failed_s
             .and_then(|failed_s| flown.after_failure(failed_s, plan));
@@ -232,8 +227,8 @@ impl Flown<'_> {
         ])
     }
 
-    fn thrust_percent(&self, begins: impl Iterator<Item = f64>) -> Option<[f64; 4]> {
-        let errors = begins.flat_map(|begin_s| {
+    fn thrust_percent(&self, begins_s: &[f64]) -> Option<[f64; 4]> {
+        let errors = begins_s.iter().flat_map(|&begin_s| {
             let before = self.mean(begin_s - BEFORE_S, begin_s, |sample| sample.thrust_n);
             let after = self
                 .between(begin_s, begin_s + RMS_S)

@@ -50,7 +50,6 @@ pub struct Sticks {
     throttle: f64,
     /// Of the full stick: roll, pitch, yaw.
     rates: [f64; 3],
-    is_armed: bool,
 }
 
 impl Sticks {
@@ -64,7 +63,6 @@ impl Sticks {
             updated_s: 0.0,
             throttle: 0.0,
             rates: [0.0; 3],
-            is_armed: false,
         }
     }
 
@@ -79,10 +77,12 @@ impl Sticks {
         let (Some(now_s), Some(plan)) = (self.manoeuvre_s(time_s), &self.plan) else {
             return false;
         };
-        let places = plan.steps.iter().map(|(_, target)| target.offset);
-        let moves = places.clone().any(|place| place != Vector3::zeros());
-        let mut begins = plan.steps.iter().map(|(begin_s, _)| *begin_s);
-        self.is_held() || !moves && begins.any(|begin_s| (begin_s..begin_s + CONSTANT_S).contains(&now_s))
+        let moves = plan
+            .steps
+            .iter()
+            .any(|(_, target)| target.offset != Vector3::zeros());
+        let has_begun = |begin_s: f64| (begin_s..begin_s + CONSTANT_S).contains(&now_s);
+        self.is_held() || !moves && plan.steps.iter().any(|(begin_s, _)| has_begun(*begin_s))
     }
 
     fn fly(&mut self, world: &World, target: Target, height_m: f64) {
@@ -122,13 +122,12 @@ impl Pilot for Sticks {
     fn update(&mut self, world: &World) -> Result<(), String> {
         let time_s = world.time_s();
         let turns = world.state.throttle.max() > 0.01;
-        self.is_armed |= turns;
         match self.phase {
             _ if self.plan.is_none() => {}
             Phase::Arming if time_s > ARMED_S => {
                 return Err(format!("the rotors do not turn within {ARMED_S} s"));
             }
-            Phase::Arming if self.is_armed => self.phase = Phase::Climbing(None),
+            Phase::Arming if turns => self.phase = Phase::Climbing(None),
             Phase::Arming => {}
             Phase::Climbing(_) if time_s > PATIENCE_S => {
                 return Err(format!("no hover within {PATIENCE_S} s"));
