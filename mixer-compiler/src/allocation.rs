@@ -2,5 +2,4 @@
 //! thrust.
 
 pub(crate) mod closed_form;
-pub(crate) mod level_yaw;
 pub(crate) mod thrust_range;

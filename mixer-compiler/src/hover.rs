@@ -1,13 +1,14 @@
 //! The vehicle in hover, by the mixer itself: throttles, what is left of roll, pitch and yaw,
 //! thrust over weight.
 
-use mixer_rt::Wrench;
+use mixer_rt::tables::{Airmode, Priorities, REQUEST_LIMIT};
+use mixer_rt::{Health, Wrench};
 use serde::Serialize;
 
 use crate::airframe::Axis;
-use crate::allocation::level_yaw::{LevelYaw, in_both_senses};
 use crate::compiled::Compiled;
 use crate::diagnostic::{Code, Diagnostic, rounded};
+use crate::tables::MixerTables;
 
 /// How finely a largest torque is looked for.
 #[derive(Clone, Copy, Debug)]
@@ -86,24 +87,58 @@ pub struct RotorOut {
     pub yaw_nm: Option<[f64; 2]>,
 }
 
+/// Share of the authority that hover with a rotor out may miss of roll, pitch and thrust: what priorities trade.
+const MISSED: f32 = 0.005;
+
+/// Least and largest yaw (N m) of level flight at a thrust (N) and a voltage (V), the rotor of a channel out, by a mixer in
+/// which thrust comes before all of yaw; `None` where there is no such flight.
+fn level_yaw(tables: &MixerTables, volts: f32, thrust_n: f32, channel: u8) -> Option<[f64; 2]> {
+    let [by_roll, by_pitch, _, by_thrust] = tables.row_scale;
+    let slack = MISSED * tables.units.len() as f32;
+    let health = Health::GOOD.with_failed(channel);
+    // More than all that there is.
+    let yaw = |sense: f32| {
+        let setpoint = Wrench {
+            yaw_nm: sense * REQUEST_LIMIT,
+            thrust_n,
+            ..Wrench::default()
+        };
+        let (_, achieved, _) = tables.mix_with_health(&setpoint, volts, health).ok()?;
+        let missed = [
+            by_roll * achieved.roll_nm,
+            by_pitch * achieved.pitch_nm,
+            by_thrust * (achieved.thrust_n - thrust_n),
+        ];
+        let is_level = missed.iter().all(|missed| missed.abs() <= slack);
+        is_level.then_some(achieved.yaw_nm.into())
+    };
+    Some([yaw(-1.0)?, yaw(1.0)?])
+}
+
 impl RotorOut {
-    /// Yaw in the weaker sense, N m; 0 where the vehicle turns by itself.
-    pub fn weaker_nm(&self) -> f64 {
-        in_both_senses(self.yaw_nm)
+    /// Yaw in the weaker sense, N m; below 0 where the vehicle turns by itself.
+    fn weaker_nm(&self) -> f64 {
+        self.yaw_nm
+            .map_or(f64::NEG_INFINITY, |[least, most]| most.min(-least))
     }
 
     /// That of both layers beside a thrust of `weight_n` N at a voltage, V; empty where yaw is not served.
-    pub fn of(compiled: &Compiled, weight_n: f64, voltage_v: Option<f64>) -> Vec<RotorOut> {
+    fn of(compiled: &Compiled, weight_n: f64, voltage_v: Option<f64>) -> Vec<RotorOut> {
         if !compiled.airframe.allocation.controls(Axis::Yaw) {
             return Vec::new();
         }
-        let (asked, volts) = (LevelYaw::new(&compiled.tables), voltage_v.unwrap_or(0.0) as f32);
+        let volts = voltage_v.unwrap_or(0.0) as f32;
+        let mut tables = compiled.tables.clone();
+        tables.priorities = Priorities {
+            airmode: Airmode::RollPitch,
+            yaw_reserve_nm: 0.0,
+        };
         let worst = |side: usize| {
             let units = compiled.tables.units.iter();
             let all = units.map(|unit| RotorOut {
                 layer: ["upper", "lower"][side],
                 output: unit.channels[side].into(),
-                yaw_nm: asked.at(volts, weight_n as f32, unit.channels[side]),
+                yaw_nm: level_yaw(&tables, volts, weight_n as f32, unit.channels[side]),
             });
             all.min_by(|a, b| a.weaker_nm().total_cmp(&b.weaker_nm()))
         };
@@ -124,31 +159,7 @@ pub struct Margin {
     pub band_nm: Option<f64>,
 }
 
-/// A yaw reserve beyond what hover has with a rotor out, at the reference voltage.
-fn reserve(compiled: &Compiled) -> Option<Diagnostic> {
-    let airframe = &compiled.airframe;
-    let reserve = Some(airframe.allocation.yaw_reserve_nm).filter(|reserve| *reserve > 0.0)?;
-    let reference_v = airframe.voltage.as_ref().map(|voltage| voltage.reference);
-    let out = RotorOut::of(compiled, airframe.weight_n()?, reference_v).into_iter();
-    let least = out.min_by(|a, b| a.weaker_nm().total_cmp(&b.weaker_nm()))?;
-    let has = rounded(least.weaker_nm());
-    (reserve > least.weaker_nm()).then(|| {
-        airframe.diagnostic(
-            Code::YawReserveRotorOut,
-            "allocation.yaw_reserve_nm",
-            format!(
-                "a yaw reserve of {} N m, where hover has {has} N m in both senses with the {} rotor of output {} out",
-                rounded(reserve),
-                least.layer,
-                least.output
-            ),
-            "not there with a rotor out",
-            "the mixer then keeps what there is; no more than that, written here, is the same with all rotors",
-        )
-    })
-}
-
-/// Warnings of hover: a yaw reserve that a rotor out leaves no yaw for, an axis that is left less than the pair may be
+/// Warnings of hover: an axis that is left less than the pair may be
 /// off by, and a rotor that is next to a limit, where those `told` do not say so by the weight.
 pub(crate) fn warnings(compiled: &Compiled, told: &[Diagnostic]) -> Vec<Diagnostic> {
     const BY_WEIGHT: [Code; 4] = [
@@ -158,7 +169,7 @@ pub(crate) fn warnings(compiled: &Compiled, told: &[Diagnostic]) -> Vec<Diagnost
         Code::TooLight,
     ];
     let is_told = told.iter().any(|warning| BY_WEIGHT.contains(&warning.code));
-    let warnings = reserve(compiled).into_iter().chain(margins(compiled));
+    let warnings = margins(compiled).into_iter();
     warnings.chain(limits(compiled).filter(|_| !is_told)).collect()
 }
 

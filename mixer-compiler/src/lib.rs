@@ -27,7 +27,7 @@ pub mod tables;
 pub mod vectors;
 
 use airframe::Airframe;
-use allocation::{closed_form, level_yaw, thrust_range};
+use allocation::{closed_form, thrust_range};
 use diagnostic::{Diagnostic, Diagnostics};
 use model::PairMap;
 use model::effectiveness::Effectiveness;
@@ -144,7 +144,6 @@ impl Model {
         };
         let mut tables = MixerTables::new(&parts, closed_form);
         tables.level_n = thrust_range::level(airframe, &tables);
-        level_yaw::set(airframe, &mut tables);
         (tables, lost_between_sides)
     }
 }

@@ -12,10 +12,10 @@
 //! rotors out  every rotor alone, and pairs of rotors: level flight and torques from there
 //! ```
 //!
-//! A wrench is delivered, or flagged and, with one rotor out at most, sound: no torque reversed or exceeded, the direction of
-//! (roll, pitch) kept, and with airmode disabled and all rotors no more thrust than asked. It has to be delivered
-//! where the throttles of least norm are well inside their range. The physics ([`Physics`])
-//! know nothing of M: they add forces and torques unit by unit.
+//! A wrench is delivered, or flagged and, with one rotor out at most, sound: no torque reversed or exceeded (with a rotor out
+//! yaw may be), the direction of (roll, pitch) kept, with airmode disabled and all rotors no more thrust than asked, and with
+//! a rotor out no thrust given up for yaw. It has to be delivered where the throttles of least norm are well inside their
+//! range. The physics ([`Physics`]) know nothing of M: they add forces and torques unit by unit.
 
 mod sides;
 
@@ -317,7 +317,8 @@ fn judge_service(answer: &Answer<'_>) -> Option<String> {
     is_inside.then(|| format!("given {}, although all units could", words(&answer.given)))
 }
 
-/// No axis is exceeded, reversed or off its direction.
+/// No axis is exceeded, reversed or off its direction. With a rotor out that is roll and pitch, and yaw alone takes
+/// no thrust where thrust comes before it.
 ///
 /// With one rotor out torques are sound where level flight at the thrust asked is attainable; the
 /// caller goes on from there. With two they are all but always, which is no proof of a fault.
@@ -329,11 +330,19 @@ fn judge_soundness(answer: &Answer<'_>) -> Option<String> {
         return None;
     }
     let room = |axis: Axis| at.tolerance(axis) + SOUND * at.authority[axis as usize];
+    let allocation = &at.compiled.airframe.allocation;
+    let is_yaw_last = !allocation.airmode.is_yaw_first() && allocation.yaw_reserve_nm == 0.0;
     let is_beyond = |axis: Axis, k: usize| {
+        if axis == Axis::Thrust && is_whole {
+            return allocation.airmode == Airmode::Disabled && given[k] > asked[k] + room(axis);
+        }
         if axis == Axis::Thrust {
-            // Level flight with rotors out may need more thrust than is asked.
-            let may_rise = at.compiled.airframe.allocation.airmode != Airmode::Disabled || !is_whole;
-            return !may_rise && given[k] > asked[k] + room(axis);
+            // The ratio of the costs allows as much again.
+            let is_given_up = (given[k] - asked[k]).abs() > 2.0 * room(axis);
+            return asked[..2] == [0.0; 2] && is_yaw_last && is_given_up;
+        }
+        if axis == Axis::Yaw && !is_whole {
+            return false;
         }
         given[k] > asked[k].max(0.0) + room(axis) || given[k] < asked[k].min(0.0) - room(axis)
     };

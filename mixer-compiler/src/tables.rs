@@ -14,8 +14,8 @@ mod single;
 use mixer_rt::{
     Conditions, Health, Saturation, SetpointError, Wrench,
     tables::{
-        Border, Cell, ClosedForm, ClosedFormUnit, Facets, Inverse, LEVEL_YAWS, Pair, Priorities,
-        REQUEST_LIMIT, SingleRotor, Tables, ThrottleRange, Tolerance, Unit, UnitState,
+        Border, Cell, ClosedForm, ClosedFormUnit, Facets, Inverse, Pair, Priorities, SingleRotor, Tables,
+        ThrottleRange, Tolerance, Unit, UnitState,
     },
 };
 
@@ -336,8 +336,6 @@ fn unit_tables(airframe: &Airframe, effectiveness: &Effectiveness) -> Vec<Unit> 
             allocation: [row(i), row(n + i)],
             effectiveness: [column(i), column(n + i)],
             channels: [unit.upper_channel as u8, unit.lower_channel as u8],
-            // Known when the other tables are: `level_yaw`.
-            level_yaw_nm: [[REQUEST_LIMIT; LEVEL_YAWS]; 2],
         })
         .collect()
 }

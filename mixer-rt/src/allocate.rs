@@ -6,9 +6,11 @@
 //! 1. roll and pitch, jointly scaled       their direction stays
 //! 2. yaw up to the reserve
 //! 3. thrust, nearest the request          airmode `roll-pitch-yaw`: after 4
-//! 4. the rest of yaw
-//! 5. yaw as it comes                      only with rotors out, where no level flight has the yaw asked
+//! 4. the rest of yaw                      with rotors out: yaw, nearest the request
 //! ```
+//!
+//! With all rotors no torque is reversed or exceeded. With rotors out yaw may be, where roll, pitch or thrust need it: a rotor
+//! alone in its unit turns the vehicle one way.
 //!
 //! With airmode `disabled` no priority raises the thrust above the request, or above what level flight
 //! needs.
@@ -19,8 +21,7 @@
 //! all rotors     least norm, eq. (8)                                  allocate/least_norm.rs
 //!                up to four vertical units: in closed form            allocate/closed_form.rs
 //!                else an interior point method on the throttles       allocate/interior.rs
-//! rotors out     with one, yaw no larger than what can be braked      allocate/level_yaw.rs
-//!                nearest the whole frame's least norm                 allocate/rotors_out.rs
+//! rotors out     nearest the whole frame's least norm                 allocate/rotors_out.rs
 //!                else the interior point method
 //! ```
 
@@ -28,7 +29,6 @@ pub(crate) mod closed_form;
 mod frame;
 pub(crate) mod interior;
 mod least_norm;
-mod level_yaw;
 pub(crate) mod power_bias;
 pub(crate) mod priorities;
 mod request;
@@ -65,11 +65,8 @@ pub(crate) fn allocate<P: Quantity, I: Inverse, S, const VERTICAL: bool>(
         if !frame.cut(wrench, units, is_whole) {
             frame.level(wrench[3], units);
         }
-    } else {
-        let wrench = &frame.braked(wrench, units);
-        if !frame.serve_with_rotors_out(wrench, units) {
-            frame.cut(wrench, units, is_whole);
-        }
+    } else if !frame.serve_with_rotors_out(wrench, units) {
+        frame.cut(wrench, units, is_whole);
     }
     false
 }

@@ -5,9 +5,6 @@ use crate::allocate::priorities::Priorities;
 use crate::conditions::Law;
 use crate::pair::{Pair, SingleRotor, ThrottleRange};
 
-/// Thrusts at which [`Unit::level_yaw_nm`] has a yaw.
-pub const LEVEL_YAWS: usize = 8;
-
 /// One coaxial unit's share of M and M+.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Unit {
@@ -19,9 +16,6 @@ pub struct Unit {
     pub effectiveness: [[f32; 4]; 2],
     /// Channels of the upper and of the lower rotor.
     pub channels: [u8; 2],
-    /// With the upper and with the lower rotor out: yaw that level flight has in either sense, N m at the reference
-    /// voltage, at thrusts that divide the range from 0 to the largest of [`Tables::level_n`] evenly.
-    pub level_yaw_nm: [[f32; LEVEL_YAWS]; 2],
 }
 
 impl Unit {

@@ -14,7 +14,7 @@ pub use crate::allocate::priorities::{Airmode, Priorities, REQUEST_LIMIT};
 pub use crate::allocate::unit::UnitState;
 pub use crate::arithmetic::{Scalar, sqrt};
 pub use crate::conditions::{Law, LawPiece};
-pub use crate::layout::{LEVEL_YAWS, Tables, Tolerance, Unit};
+pub use crate::layout::{Tables, Tolerance, Unit};
 pub use crate::mix::{mix, mix_into};
 pub use crate::pair::{
     Biquadratic, Coefficients, Cubic, Inverse, Pair, PolynomialInverse, Quantity, Quartic, SingleRotor,

@@ -98,10 +98,14 @@ fn flags_are_those_of_the_achieved_wrench() {
     });
 }
 
-/// No torque is reversed or exceeded, and (roll, pitch) keeps its direction.
+/// No torque is reversed or exceeded, with rotors out neither roll nor pitch, and (roll, pitch) keeps its direction.
 fn unsound(frame: &Frame, request: &Request, answer: &Answer) -> Option<String> {
     let slack = frame.slack();
-    let overstepped = [Axis::Roll, Axis::Pitch, Axis::Yaw].into_iter().find_map(|axis| {
+    let held = match request.health == Health::GOOD {
+        true => &[Axis::Roll, Axis::Pitch, Axis::Yaw][..],
+        false => &[Axis::Roll, Axis::Pitch],
+    };
+    let overstepped = held.iter().find_map(|&axis| {
         let [asked, got] = [request.wrench, answer.achieved].map(|wrench| f64::from(wrench[axis as usize]));
         let beyond = (got * asked.signum() - asked.abs()).max(-got * asked.signum());
         (beyond > slack[axis as usize]).then(|| format!("{axis}: {asked} asked, {got} given"))

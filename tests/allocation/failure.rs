@@ -66,7 +66,7 @@ impl Flight {
         let shortfall = Shortfall::of(&answer, &request, &self.frame, &oracle).expect("solved");
         let shortfall = shortfall.expect("an X8 flies without any one rotor");
         assert!(!shortfall.misses(), "{request:?} -> {answer:?}: {shortfall:?}");
-        let optimum = oracle.optimum(request.braked(&self.frame)).expect("solved");
+        let optimum = oracle.optimum(request.asked()).expect("solved");
         optimum.expect("an X8 flies without any one rotor").share
     }
 

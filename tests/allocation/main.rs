@@ -9,7 +9,7 @@
 //! | `authority.rs` | an X12 against an X8 of the same real pair: as much yaw and thrust per unit |
 //! | `optimum.rs` | linear programmes: frames in closed form reach the optimum |
 //! | `regressions.rs`, `.toml` | requests that an earlier mixer answered badly, as data |
-//! | `braked.rs` | closed loops with a rotor out: a vehicle brakes what it turns |
+//! | `closed_loops.rs` | closed loops with one and two rotors out: a vehicle ends where it should |
 //! | `failure.rs` | an X8 that loses a rotor: still flies |
 //! | `properties.rs` | any layout and request: sound and truthful (proptest; `PROPTEST_CASES=1000` runs more) |
 //! | `rotors_out.rs` | one and two rotors out, real pairs: nothing is reversed or exceeded |
@@ -22,7 +22,7 @@
 #![allow(missing_docs)]
 
 mod authority;
-mod braked;
+mod closed_loops;
 mod degenerate;
 mod failure;
 // On other hosts `tools/cargo-mixer/tests/commands/library/exceptions.c` alone watches the exceptions.

@@ -114,19 +114,11 @@ pub mod coaxial_bicopter {
             allocation: [[-1.1111112, 0.0, 0.0, 0.5], [0.0, 0.0, 0.5, 0.0]],
             effectiveness: [[-0.45, 0.0, 0.0, 1.0], [0.0, 0.0, 1.0, 0.0]],
             channels: [0, 1],
-            level_yaw_nm: [
-                [0.0, 0.0, 0.0, 0.00051276386, 0.0, 0.0, 0.0, 0.0],
-                [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
-            ],
         },
         tables::Unit {
             allocation: [[1.1111112, 0.0, 0.0, 0.5], [0.0, 0.0, -0.5, 0.0]],
             effectiveness: [[0.45, 0.0, 0.0, 1.0], [0.0, 0.0, -1.0, 0.0]],
             channels: [2, 3],
-            level_yaw_nm: [
-                [0.0, 0.0, 0.0, 0.00051273406, 0.0, 0.0, 0.0, 0.0],
-                [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
-            ],
         },
     ];
     /// The forward map of a unit: thrust and torque as polynomials of both throttles.

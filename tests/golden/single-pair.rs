@@ -113,10 +113,6 @@ pub mod single_pair {
             allocation: [[0.0, 0.0, 0.0, 1.0], [0.0, 0.0, 1.0, 0.0]],
             effectiveness: [[0.0, 0.0, 0.0, 1.0], [0.0, 0.0, 1.0, 0.0]],
             channels: [0, 1],
-            level_yaw_nm: [
-                [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
-                [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
-            ],
         },
     ];
     /// The forward map of a unit: thrust and torque as polynomials of both throttles.

@@ -43,6 +43,9 @@ const SLACK: f64 = 1e-9;
 /// Share of its authority by which a thrust may be off that counts as attained.
 const LEVEL: f64 = 1e-6;
 
+/// Share of the authority beyond which the mixer takes no yaw.
+const YAW_LIMIT: f64 = 1.2;
+
 /// More torque (N m) or thrust (N) than any frame has.
 const FREE: (f64, f64) = (-1e4, 1e4);
 
@@ -69,6 +72,8 @@ pub struct Oracle {
     size: [f64; 4],
     airmode: Airmode,
     reserve: f64,
+    /// With rotors out: the largest yaw that the mixer takes for a request, N m.
+    yaw_limit: Option<f64>,
 }
 
 /// A run of pieces `[from, to)` per unit, with its relaxed optimum.
@@ -131,6 +136,8 @@ impl Oracle {
                 .map(|authority| if authority > 0.0 { authority } else { 1.0 }),
             airmode: allocation.airmode,
             reserve: allocation.yaw_reserve_nm,
+            yaw_limit: (health != Health::GOOD)
+                .then(|| YAW_LIMIT * physics.authority()[2] * factors[0].max(factors[1])),
         }
     }
 
@@ -173,17 +180,20 @@ impl Oracle {
         }
     }
 
-    /// Yaw from zero to the request, roll = pitch = 0, any thrust.
+    /// Yaw from zero to the request, with rotors out any; roll = pitch = 0, any thrust.
     fn level(&self, yaw: f64) -> Ranges {
         Ranges {
             share: (0.0, 0.0),
-            yaw: (yaw.min(0.0), yaw.max(0.0)),
+            yaw: match self.yaw_limit {
+                None => (yaw.min(0.0), yaw.max(0.0)),
+                Some(_) => FREE,
+            },
             thrust: FREE,
         }
     }
 
     /// The least thrust (N) at which roll = pitch = 0 is attainable with a yaw between zero and the
-    /// one asked; `None` where there is none. Airmode "disabled" never gives more than this or the
+    /// one asked, with rotors out with any; `None` where there is none. Airmode "disabled" never gives more than this or the
     /// thrust asked.
     ///
     /// # Errors
@@ -194,7 +204,7 @@ impl Oracle {
     }
 
     /// True where roll = pitch = 0 is attainable at this thrust (N) with a yaw between zero and the one
-    /// asked.
+    /// asked, with rotors out with any.
     ///
     /// # Errors
     /// The solver gave up.
@@ -214,6 +224,13 @@ impl Oracle {
             ranges.thrust.1 = thrust.max(floor + SLACK);
         }
         Ok(Some(ranges))
+    }
+
+    /// Yaw in the sense of what is asked that comes before thrust, N m. With rotors out it grows with what
+    /// is asked, from as much the other way as there may be to the reserve.
+    fn kept(&self, yaw: f64) -> f64 {
+        let asked = yaw.min(self.reserve);
+        asked - self.yaw_limit.unwrap_or(0.0) * (1.0 - asked / self.reserve)
     }
 
     fn highest_share(&self, direction: [f64; 2], ranges: Ranges) -> Result<Option<f64>, Error> {
@@ -299,12 +316,19 @@ impl Oracle {
         ranges.share = ((share - SLACK).max(0.0), share);
         if self.reserve > 0.0 {
             let yaw = request[2];
-            let reserved = (Quantity::Yaw, yaw.clamp(-self.reserve, self.reserve));
-            let Some((kept, _)) = self.nearest(reserved, direction, ranges)? else {
+            let goal = match yaw < 0.0 {
+                true => Goal::Lowest(Quantity::Yaw),
+                false => Goal::Highest(Quantity::Yaw),
+            };
+            let Some(furthest) = self.best(goal, direction, ranges)? else {
                 return Ok(None);
             };
-            let kept = if yaw < 0.0 { kept + SLACK } else { kept - SLACK };
-            ranges.yaw = (yaw.min(kept), yaw.max(kept));
+            let kept = self.kept(yaw.abs()) - SLACK;
+            if yaw < 0.0 {
+                ranges.yaw.1 = ranges.yaw.1.min(furthest.yaw.max(-kept) + SLACK);
+            } else {
+                ranges.yaw.0 = ranges.yaw.0.max(furthest.yaw.min(kept) - SLACK);
+            }
         }
         let [mut second, third] = self.rest(request);
         if let Some((_, Some(value))) = given {

@@ -2,7 +2,6 @@
 
 use mixer_compiler::Compiled;
 use mixer_compiler::airframe::Allocation;
-use mixer_rt::tables::LEVEL_YAWS;
 use mixer_rt::{Axis, Conditions, Health, Saturation, SetpointError, Wrench};
 
 use crate::physics::Physics;
@@ -108,34 +107,6 @@ impl Request {
     /// `[roll, pitch, yaw, thrust]` asked, N m and N.
     pub fn asked(&self) -> [f64; 4] {
         self.wrench.map(f64::from)
-    }
-
-    /// The same with yaw no larger than what can be braked with one rotor out: what priorities are judged by.
-    pub fn braked(&self, frame: &Frame) -> [f64; 4] {
-        let [roll, pitch, yaw, thrust] = self.asked();
-        let (tables, [k_f, k_q]) = (&frame.compiled.tables, self.factors(frame));
-        let reserve = frame.allocation().yaw_reserve_nm / k_q;
-        let cells = LEVEL_YAWS - 1;
-        let at = (thrust / k_f / f64::from(tables.level_n[1]) * cells as f64).clamp(0.0, cells as f64);
-        let cell = (at as usize).min(cells - 1);
-        let limit = |yaws: &[f32; LEVEL_YAWS]| {
-            let yaws = yaws.map(f64::from);
-            let here = yaws[cell] + (at - cell as f64) * (yaws[cell + 1] - yaws[cell]);
-            let most = yaws[..=cell].iter().fold(here, |a, b| a.max(*b));
-            here.max(reserve.min(most))
-        };
-        let rotors = tables
-            .units
-            .iter()
-            .flat_map(|unit| unit.channels.into_iter().zip(&unit.level_yaw_nm));
-        let out = rotors.filter(|(channel, _)| self.health.has_failed(*channel));
-        let limits: Vec<f64> = out.map(|(_, yaws)| limit(yaws)).collect();
-        let limit = if let [limit] = limits[..] {
-            k_q * limit
-        } else {
-            f64::INFINITY
-        };
-        [roll, pitch, yaw.clamp(-limit, limit), thrust]
     }
 
     /// Has the frame's mixer answer.

@@ -57,7 +57,7 @@ impl Shortfall {
         oracle: &Oracle,
     ) -> Result<Option<Shortfall>, Error> {
         let (served, authority) = (frame.served(), frame.authority);
-        let mut asked = request.braked(frame);
+        let mut asked = request.asked();
         for (asked, _) in asked.iter_mut().zip(served).filter(|(_, served)| !served) {
             *asked = 0.0;
         }

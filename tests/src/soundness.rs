@@ -159,22 +159,24 @@ fn flags(frame: &Frame, request: &Request, answer: &Answer) -> Option<Fault> {
     })
 }
 
-/// No controlled axis is reversed or exceeded, (roll, pitch) keeps its direction, and airmode
-/// "disabled" does not raise the thrust beyond the request or the floor: all where roll = pitch = 0
-/// is attainable at all within the yaw asked, with rotors out at the thrust asked.
+/// No controlled axis is reversed or exceeded, but for yaw with rotors out, (roll, pitch) keeps its
+/// direction, and airmode "disabled" does not raise the thrust beyond the request or the floor: all
+/// where roll = pitch = 0 is attainable at all within the yaw asked, with rotors out at the thrust
+/// asked with any yaw.
 fn overstepping(frame: &Frame, request: &Request, answer: &Answer) -> Result<Vec<Fault>, microlp::Error> {
     let served = frame.served();
-    let mut asked = request.braked(frame);
+    let mut asked = request.asked();
     for (asked, _) in asked.iter_mut().zip(served).filter(|(_, served)| !served) {
         *asked = 0.0;
     }
     let tolerance = frame.compiled.tables.tolerance.wrench.map(f64::from);
     let slack: [f64; 4] = std::array::from_fn(|axis| tolerance[axis] + SLACK * frame.authority[axis]);
+    let is_whole = request.health == Health::GOOD;
     let mut faults = Vec::new();
     for (index, axis) in Axis::ALL
         .into_iter()
         .enumerate()
-        .take(3)
+        .take(if is_whole { 3 } else { 2 })
         .filter(|(index, _)| served[*index])
     {
         let (asked, got) = (asked[index], answer.achieved[index]);
@@ -210,9 +212,7 @@ fn overstepping(frame: &Frame, request: &Request, answer: &Answer) -> Result<Vec
         return Ok(Vec::new());
     };
     let exact = || Oracle::exact(&frame.physics, frame.allocation(), factors, request.health);
-    if request.health != Health::GOOD
-        && !(oracle.has_level(asked[2], asked[3])? && exact().has_level(asked[2], asked[3])?)
-    {
+    if !is_whole && !(oracle.has_level(asked[2], asked[3])? && exact().has_level(asked[2], asked[3])?) {
         return Ok(Vec::new());
     }
     let given = answer.achieved[3];

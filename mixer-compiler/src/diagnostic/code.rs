@@ -170,8 +170,6 @@ catalogue! {
     PowerBiasCosts = 335,
     /// Yaw that comes before thrust: the thrust changes while the vehicle yaws.
     YawBeforeThrust = 336,
-    /// A yaw reserve beyond what hover has with a rotor out.
-    YawReserveRotorOut = 337,
     /// A vehicle that is too heavy to hover.
     TooHeavy = 340,
     /// A vehicle that rises at idle.

@@ -101,7 +101,7 @@ macro_rules! parts {
 }
 
 parts! {
-    Unit { allocation, effectiveness, channels, level_yaw_nm };
+    Unit { allocation, effectiveness, channels };
     Pair<QuantityTable> { thrust, torque };
     SingleRotor { thrust, torque };
     ThrottleRange { min, max };

@@ -24,10 +24,7 @@
 //! the problem convex. All steps are cut to the same share, so that no unknown comes to its bound.
 //!
 //! The number of iterations is fixed: [`ITERATIONS`], and as many more where a row is still missed,
-//! about one request in a hundred. So the work is a product, which `cargo counts` states. With
-//! rotors out the further iterations serve yaw last where the first ones show that no level flight has
-//! the yaw asked: by weak duality lambda . missed is a lower bound of what any answer gives up, and it
-//! exceeds the cost of all of roll and pitch.
+//! about one request in a hundred. So the work is a product, which `cargo counts` states.
 //!
 //! Constants were chosen on 20,000 drawn requests per state of health, and on 50,000 pairs of requests
 //! 1e-4 apart; `cargo soak` and the tests of `tests/allocation` show what they trade.
@@ -35,8 +32,7 @@
 use core::hint::black_box;
 
 use super::frame::Frame;
-use super::priorities::TORQUE;
-use super::request::{Request, Yaw};
+use super::request::Request;
 use super::system::{Factors, Matrix, Products};
 use super::unit::UnitState;
 use super::unknown::Unknown;
@@ -80,22 +76,14 @@ impl<P: Quantity, I, S, const VERTICAL: bool> Frame<'_, '_, P, I, S, VERTICAL> {
     pub(super) fn cut(&self, wrench: &[f32; 4], units: &mut [UnitState], is_whole: bool) -> bool {
         let n = units.len() as f32;
         let scale = [self.per_factor[0], self.ratio];
-        let mut request = Request::new(self.tables, wrench, n, scale, Yaw::Within);
+        let mut request = Request::new(self.tables, wrench, n, scale, is_whole);
         self.aim(units);
         let mut lambda = self.begin(&request, units);
         let missed = self.iterate(&mut request, units, &mut lambda, FIRST_MU);
         if is_met(&missed, MET * n) {
             return true;
         }
-        let given_up =
-            (lambda[0] * missed[0] + lambda[1] * missed[1]) + (lambda[2] * missed[2] + lambda[3] * missed[3]);
-        let mut mu = NEXT_MU;
-        if !is_whole && given_up > TORQUE * n {
-            request = Request::new(self.tables, wrench, n, scale, Yaw::Last);
-            lambda = self.begin(&request, units);
-            mu = FIRST_MU;
-        }
-        let missed = self.iterate(&mut request, units, &mut lambda, mu);
+        let missed = self.iterate(&mut request, units, &mut lambda, NEXT_MU);
         is_met(&missed, MET_AT_LAST * n)
     }
 

@@ -10,6 +10,7 @@
 //! | thrust: too little | what is asked | [`MIDDLE`]; `roll-pitch-yaw`: [`LAST`] |
 //! | thrust: too much | more than all rotors give | as too little; `disabled`: [`FORBIDDEN`] |
 //! | yaw beyond the reserve | the rest of what is asked | [`LAST`]; `roll-pitch-yaw`: [`MIDDLE`] |
+//! | with rotors out: yaw beyond the request, or the other way | all that there is | as the rest of yaw |
 //!
 //! Ratios of costs act as priorities, and bound how steep the answer is in the request: a share of a
 //! higher priority is given up where that frees more of a lower one than their ratio.

@@ -6,17 +6,24 @@
 //! scaled so that n units have the authority n.
 //!
 //! Costs are those of [`priorities`](super::priorities). Nothing may be short across (roll, pitch): their
-//! direction stays. Every shortage ends at what is asked: nothing is reversed or exceeded while the rows
-//! are met.
+//! direction stays. Every shortage ends at what is asked: with all rotors nothing is reversed or exceeded
+//! while the rows are met.
 //!
-//! Where rotors are out there may be no level flight with the yaw asked. Then yaw comes last
-//! ([`Yaw::Last`]): short or exceeded without limit.
+//! With rotors out yaw may be anything, at a cost per distance from what is asked: a rotor alone in its unit
+//! has a torque that the others may not balance. The reserve then grows with the yaw asked,
+//!
+//! ```text
+//! kept = yaw - LIMIT (1 - yaw / reserve)     for 0 <= yaw <= reserve
+//! ```
+//!
+//! so that a request of the whole reserve has all of it, no thrust is given up for a trace of yaw, and nothing
+//! jumps where the request changes its sense.
 
 use super::priorities::{Airmode, FORBIDDEN, LAST, MIDDLE, RESERVED, TORQUE, limited};
 use super::system::{Columns, Matrix};
 use super::unknown::Unknown;
 use crate::layout::Tables;
-use crate::{divisor, larger, smaller, sqrt};
+use crate::{divided, divisor, larger, smaller, sqrt};
 
 /// Largest roll, pitch and yaw asked, in rows per unit: beyond all that units give.
 const TORQUE_LIMIT: f32 = 1.2;
@@ -84,15 +91,6 @@ impl Shortage {
     }
 }
 
-/// How yaw is served.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Yaw {
-    /// Never reversed or exceeded.
-    Within,
-    /// As it comes, as near to what is asked as the rest allows.
-    Last,
-}
-
 /// A request in its rows.
 pub(super) struct Request {
     /// Rows asked; no torque is negative.
@@ -101,22 +99,23 @@ pub(super) struct Request {
     direction: [f32; 2],
     /// The sense of yaw, 1 or -1.
     sense: f32,
-    /// Of roll and pitch, of thrust, of thrust in excess, of yaw, of yaw within the reserve.
-    shortages: [Shortage; 5],
-    /// Whether the last shortage takes part.
-    has_fifth: bool,
+    /// Of roll and pitch, of thrust, of thrust in excess, of yaw, of yaw within the reserve, of yaw in excess.
+    shortages: [Shortage; 6],
+    /// Whether the last two take part: with a reserve, with rotors out.
+    has_reserve: bool,
+    may_exceed: bool,
 }
 
 impl Request {
-    /// The request `[roll, pitch, yaw, thrust]` (N m, N; bounded) for n units. `per_thrust` is 1 / k_f,
-    /// `ratio` k_Q / k_f.
+    /// The request `[roll, pitch, yaw, thrust]` (N m, N; bounded) for n units, `is_whole` where all rotors
+    /// turn. `per_thrust` is 1 / k_f, `ratio` k_Q / k_f.
     #[inline(never)]
     pub(super) fn new<P, I, S>(
         tables: &Tables<'_, P, I, S>,
         wrench: &[f32; 4],
         n: f32,
         [per_thrust, ratio]: [f32; 2],
-        yaw: Yaw,
+        is_whole: bool,
     ) -> Self {
         let rows = tables.row_scale.map(|row| row * per_thrust);
         let mut asked = *wrench;
@@ -133,10 +132,12 @@ impl Request {
         let per_along = 1.0 / divisor(along);
         let (sense, turn) = if turn < 0.0 { (-1.0, -turn) } else { (1.0, turn) };
         let reserve = tables.priorities.yaw_reserve_nm * rows[2];
-        let kept = smaller(reserve, turn);
+        let asked_of_it = smaller(reserve, turn);
+        // How far yaw may go the other way.
+        let far = if is_whole { 0.0 } else { yaw_limit };
+        let kept = asked_of_it - far * (1.0 - divided(asked_of_it, divisor(reserve)));
         let airmode = tables.priorities.airmode;
-        let is_last = yaw == Yaw::Last;
-        let [thrust_cost, yaw_cost] = if airmode.is_yaw_first() && !is_last {
+        let [thrust_cost, yaw_cost] = if airmode.is_yaw_first() {
             [LAST, MIDDLE]
         } else {
             [MIDDLE, LAST]
@@ -146,15 +147,6 @@ impl Request {
         } else {
             thrust_cost
         };
-        let anything = Shortage::new(yaw_limit + turn, LAST);
-        let [beyond, within] = if is_last {
-            [anything, anything.opposite()]
-        } else {
-            [
-                Shortage::new(turn - kept, yaw_cost),
-                Shortage::new(kept, RESERVED),
-            ]
-        };
         Request {
             wanted: [along, 0.0, turn, thrust],
             direction: [roll * per_along, pitch * per_along],
@@ -163,10 +155,12 @@ impl Request {
                 Shortage::new(along, TORQUE),
                 Shortage::new(thrust, thrust_cost),
                 Shortage::new(EXCESS_LIMIT * n - thrust, excess_cost).opposite(),
-                beyond,
-                within,
+                Shortage::new(turn - kept, yaw_cost),
+                Shortage::new(far + kept, RESERVED),
+                Shortage::new(yaw_limit - turn, yaw_cost).opposite(),
             ],
-            has_fifth: is_last || reserve > 0.0,
+            has_reserve: reserve > 0.0,
+            may_exceed: !is_whole,
         }
     }
 
@@ -188,13 +182,16 @@ impl Request {
     #[inline(always)]
     pub(super) fn eliminate(&mut self, lambda: &[f32; 4], mu: f32, matrix: &mut Matrix) -> [f32; 4] {
         let mut missed = self.wanted;
-        let [torque, little, much, yaw, kept] = &mut self.shortages;
+        let [torque, little, much, yaw, kept, more] = &mut self.shortages;
         torque.eliminate(lambda[0], mu, &mut missed[0], &mut matrix[0]);
         yaw.eliminate(lambda[2], mu, &mut missed[2], &mut matrix[7]);
         little.eliminate(lambda[3], mu, &mut missed[3], &mut matrix[9]);
         much.eliminate(lambda[3], mu, &mut missed[3], &mut matrix[9]);
-        if self.has_fifth {
+        if self.has_reserve {
             kept.eliminate(lambda[2], mu, &mut missed[2], &mut matrix[7]);
+        }
+        if self.may_exceed {
+            more.eliminate(lambda[2], mu, &mut missed[2], &mut matrix[7]);
         }
         missed
     }
@@ -202,13 +199,16 @@ impl Request {
     /// Steps with a change of the multipliers; raises `most` to the largest step over its room.
     #[inline(always)]
     pub(super) fn respond(&mut self, change: &[f32; 4], most: &mut f32) {
-        let [torque, little, much, yaw, kept] = &mut self.shortages;
+        let [torque, little, much, yaw, kept, more] = &mut self.shortages;
         torque.respond(change[0], most);
         yaw.respond(change[2], most);
         little.respond(change[3], most);
         much.respond(change[3], most);
-        if self.has_fifth {
+        if self.has_reserve {
             kept.respond(change[2], most);
+        }
+        if self.may_exceed {
+            more.respond(change[2], most);
         }
     }
 
@@ -224,8 +224,13 @@ impl Request {
     #[inline(always)]
     pub(super) fn left(&self) -> [f32; 4] {
         let [along, across, turn, thrust] = self.wanted;
-        let [torque, little, much, yaw, kept] = self.shortages.each_ref().map(Shortage::amount);
-        let yaw = if self.has_fifth { yaw + kept } else { yaw };
+        let [torque, little, much, mut yaw, kept, more] = self.shortages.each_ref().map(Shortage::amount);
+        if self.has_reserve {
+            yaw += kept;
+        }
+        if self.may_exceed {
+            yaw += more;
+        }
         [along - torque, across, turn - yaw, thrust - (little + much)]
     }
 }

@@ -40,6 +40,8 @@ pub enum Check {
     Optimal,
     /// With rotors out a larger request gets no less of roll and pitch than a smaller one.
     Grown,
+    /// With rotors out yaw takes neither roll nor pitch nor thrust, where these come before it.
+    YawLast,
 }
 
 /// A limit of the table.
@@ -72,7 +74,7 @@ const fn limit(check: Check, name: &'static str, size: f64, rate: f64, rate_out:
 
 /// The limits, in the order of [`Check`]. Sizes and rates are those that `docs/allocation.md`
 /// promises; what has no size is a fault as such.
-pub const LIMITS: [Limit; 16] = [
+pub const LIMITS: [Limit; 17] = [
     limit(Check::Compiled, "compiled", 0.0, 0.1, NONE),
     limit(Check::Reason, "reason", 0.0, 0.0, NONE),
     limit(Check::Effectiveness, "effectiveness", 1e-6, 0.0, NONE),
@@ -90,6 +92,7 @@ pub const LIMITS: [Limit; 16] = [
     limit(Check::Step, "step", 0.01, 1e-4, [1e-4; 2]),
     limit(Check::Optimal, "optimal", ALLOWED, 0.01, [0.04, 0.2]),
     limit(Check::Grown, "grown", 0.02, 0.0, [1e-4; 2]),
+    limit(Check::YawLast, "yaw last", 0.02, 0.0, [1e-4; 2]),
 ];
 
 impl Check {

@@ -138,9 +138,7 @@ impl<'a> Visit<'a> {
         let frame = draw.frame;
         for _ in 0..attainable {
             let request = draw.attainable();
-            // Beside the yaw that cannot be braked, the rest of the wrench may not be attainable.
-            let is_whole = request.braked(frame) == request.asked();
-            if let Some(answer) = self.sound(frame, &request)?.filter(|_| is_whole) {
+            if let Some(answer) = self.sound(frame, &request)? {
                 let size = missed(frame, &request, &answer);
                 let achieved = answer.achieved;
                 self.look(Check::Delivered, size, &[request], || {
@@ -158,6 +156,7 @@ impl<'a> Visit<'a> {
         for _ in 0..if self.rotors_out > 0 { RAYS } else { 0 } {
             let request = draw.moderate();
             self.grow(frame, &request)?;
+            self.leave_yaw_last(frame, &request)?;
         }
         if self.index.is_multiple_of(JUDGED_FRAMES) && frame.physics.units() <= MOST_JUDGED_UNITS {
             for _ in 0..JUDGED {
@@ -203,13 +202,40 @@ impl<'a> Visit<'a> {
                 best = (given, larger);
             }
             let lost = most - given;
-            // Yaw comes last where level flight is not attainable with it.
+            // Else thrust is given up first.
             let is_excused = lost > Check::Grown.limit().size && !has_level(frame, &smaller)?;
             let lost = if is_excused { 0.0 } else { lost.max(0.0) };
             self.look(Check::Grown, lost, &[smaller, larger], || {
                 format!("{lost} of the authority is lost")
             });
         }
+        Ok(())
+    }
+
+    /// Yaw asked beside the rest of a wrench takes nothing of it that comes before yaw, and so does none: a smaller answer
+    /// stays attainable whatever yaw is asked.
+    fn leave_yaw_last(&mut self, frame: &Frame, request: &Request) -> Result<(), Error> {
+        let allocation = frame.allocation();
+        if allocation.airmode.is_yaw_first() || allocation.yaw_reserve_nm > 0.0 {
+            return Ok(());
+        }
+        let mut without = *request;
+        without.wrench[2] = 0.0;
+        let (Some(answer), Some(free)) = (self.answer(frame, request), self.answer(frame, &without)) else {
+            return Ok(());
+        };
+        let missed = |answer: &Answer, axis: usize| (answer.achieved[axis] - request.asked()[axis]).abs();
+        let lost = |axis: usize| (missed(&answer, axis) - missed(&free, axis)).abs() / frame.size(axis);
+        let lost = [0, 1, 3]
+            .into_iter()
+            .filter(|axis| frame.served()[*axis])
+            .map(lost)
+            .fold(0.0, f64::max);
+        let is_excused = lost > Check::YawLast.limit().size && !has_level(frame, request)?;
+        let size = if is_excused { 0.0 } else { lost };
+        self.look(Check::YawLast, size, &[*request, without], || {
+            format!("{:?} with yaw, {:?} without", answer.achieved, free.achieved)
+        });
         Ok(())
     }
 
@@ -254,22 +280,21 @@ fn missed(frame: &Frame, request: &Request, answer: &Answer) -> f64 {
     (0..4)
         .filter(|&axis| frame.served()[axis])
         .map(|axis| {
-            let missed = (request.braked(frame)[axis] - answer.achieved[axis]).abs();
+            let missed = (request.asked()[axis] - answer.achieved[axis]).abs();
             (missed - tolerance[axis]) / frame.size(axis)
         })
         .fold(0.0, f64::max)
 }
 
-/// True where level flight at the thrust asked is attainable with the yaw asked or less.
+/// True where level flight at the thrust asked is attainable, with rotors out at any yaw.
 fn has_level(frame: &Frame, request: &Request) -> Result<bool, Error> {
     let factors = request.factors(frame);
     let oracle = Oracle::exact(&frame.physics, frame.allocation(), factors, request.health);
-    let [.., yaw, thrust] = request.braked(frame);
+    let [.., yaw, thrust] = request.asked();
     oracle.has_level(yaw, thrust)
 }
 
-/// True where roll, pitch and yaw can be zero without these rotors, at the middle of the voltage
-/// range.
+/// True where roll and pitch can be zero without these rotors, at the middle of the voltage range.
 pub(super) fn is_level_attainable(frame: &Frame, health: Health) -> Result<bool, Error> {
     let [low, high] = frame.physics.voltage_range().unwrap_or_default();
     let factors = frame.physics.factors(low.midpoint(high) as f32);

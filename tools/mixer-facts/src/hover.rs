@@ -2,7 +2,7 @@
 
 use mixer_compiler::Compiled;
 use mixer_compiler::airframe::Axis;
-use mixer_compiler::hover::{HoverAt, RotorOut};
+use mixer_compiler::hover::HoverAt;
 use serde::Serialize;
 
 /// The vehicle in hover.
@@ -45,8 +45,7 @@ impl Hover {
 const KEPT_YAW: f64 = 0.2;
 
 /// A yaw reserve to begin with, N m: a fifth of the yaw that is left in hover either way, at the
-/// reference voltage, and no more than hover has with any one rotor out. Hover is the weight,
-/// without a mass half of the largest bare thrust. `None` where nothing is left or yaw is not served.
+/// reference voltage. Hover is the weight, without a mass half of the largest bare thrust. `None` where nothing is left or yaw is not served.
 pub fn yaw_reserve(compiled: &Compiled) -> Option<f64> {
     let airframe = &compiled.airframe;
     let half_n = 0.5 * f64::from(compiled.thrust_range_n[1]);
@@ -56,7 +55,6 @@ pub fn yaw_reserve(compiled: &Compiled) -> Option<f64> {
     let mut margins = hover.margins.iter();
     let yaw = margins.find(|margin| margin.axis == Axis::Yaw.name())?;
     let [least, most] = yaw.torque_nm;
-    let out = hover.rotor_out.iter().map(RotorOut::weaker_nm);
-    let reserve = out.fold(KEPT_YAW * most.min(-least), f64::min);
+    let reserve = KEPT_YAW * most.min(-least);
     (reserve > 0.0).then_some(reserve)
 }

@@ -4,7 +4,7 @@ use mixer_compiler::airframe::Airmode;
 use mixer_compiler::{ARDUPILOT_MOST_SPIN_MIN as MOST_SPIN_MIN, Compiled};
 
 use crate::params::frames;
-use crate::params::parameter::{Parameters, curve, hundredths, on_curve, rotor_out};
+use crate::params::parameter::{Parameters, curve, hundredths, on_curve};
 
 /// ArduPilot's own `MOT_SPIN_ARM`.
 const SPIN_ARM: f64 = 0.1;
@@ -46,7 +46,6 @@ pub(crate) fn settings(compiled: &Compiled, all: &mut Parameters) {
     let why = format!("Weight over the thrust of all rotors at full throttle{at}.");
     hover_throttle(hover, &why, all);
     all.note(gains(compiled));
-    rotor_out("ATC_RATE_Y_MAX", compiled, all);
     if airframe.allocation.airmode == Airmode::Disabled {
         all.note(
             "the airmode is \"disabled\", which gives no roll and pitch at throttle 0; ArduPilot counts on them: \

@@ -4,7 +4,7 @@ use mixer_compiler::Compiled;
 use mixer_compiler::airframe::Airmode;
 
 use crate::import::betaflight::TABLES;
-use crate::params::parameter::{Parameters, curve, rotor_out};
+use crate::params::parameter::{Parameters, curve};
 
 /// `MAX_SUPPORTED_MOTORS` of Betaflight's boards.
 const MOST_MOTORS: usize = 8;
@@ -72,7 +72,6 @@ pub(crate) fn settings(compiled: &Compiled, all: &mut Parameters) {
         "PID gains of Betaflight's own mixer stay: a PID sum asks for the torque that its factors give in hover at the reference \
          voltage (`[vehicle] mass_kg` says where that is). Settings of profiles are those of the active one",
     );
-    rotor_out("yaw rates", compiled, all);
 }
 
 /// Where Betaflight's own mixer puts out the throttles.

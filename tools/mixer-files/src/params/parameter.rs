@@ -5,7 +5,6 @@ use std::fmt;
 use mixer_compiler::Compiled;
 use mixer_compiler::airframe::Airframe;
 use mixer_compiler::diagnostic::rounded;
-use mixer_compiler::hover::RotorOut;
 
 /// A parameter of a flight stack.
 #[derive(Clone, Debug)]
@@ -120,31 +119,6 @@ pub fn bench_pulses(airframe: &Airframe) -> Option<[f64; 2]> {
 /// To two decimals.
 pub(crate) fn hundredths(value: f64) -> f64 {
     (100.0 * value).round() / 100.0
-}
-
-/// A note on a stack's largest yaw rate: what a vehicle can brake with any one rotor out.
-pub(crate) fn rotor_out(name: &str, compiled: &Compiled, all: &mut Parameters) {
-    let airframe = &compiled.airframe;
-    let reference_v = airframe.voltage.as_ref().map(|voltage| voltage.reference);
-    let Some(weight_n) = airframe.weight_n() else {
-        return;
-    };
-    let out = RotorOut::of(compiled, weight_n, reference_v);
-    let Some(yaw_nm) = out.iter().map(RotorOut::weaker_nm).reduce(f64::min) else {
-        return;
-    };
-    let inertia = airframe
-        .vehicle
-        .as_ref()
-        .and_then(|vehicle| vehicle.inertia_kg_m2);
-    let rate = inertia.map_or(String::new(), |[_, _, inertia]| {
-        let rate = libm::sqrt(2.0 * yaw_nm / inertia * std::f64::consts::FRAC_PI_2).to_degrees();
-        format!(", which stops the vehicle from {rate:.0} degrees/s within a quarter turn")
-    });
-    all.note(format!(
-        "{name}: with any one rotor out hover has {} N m of yaw in both senses{rate}",
-        rounded(yaw_nm)
-    ));
 }
 
 /// Of one unit at the reference voltage, N.

@@ -3,7 +3,7 @@
 use mixer_compiler::Compiled;
 use mixer_compiler::airframe::{Correction, Spin};
 
-use crate::params::parameter::{Parameters, curve, hundredths, on_curve, rotor_out};
+use crate::params::parameter::{Parameters, curve, hundredths, on_curve};
 
 /// Most rotors that PX4 has parameters for.
 const MOST_ROTORS: usize = 12;
@@ -61,7 +61,6 @@ pub(crate) fn settings(compiled: &Compiled, currents: Currents, all: &mut Parame
         all.note(DENSITY);
     }
     all.note(gains(compiled));
-    rotor_out("MC_YAWRATE_MAX", compiled, all);
 }
 
 /// Accuracy of PX4's density.
