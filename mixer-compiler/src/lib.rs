@@ -13,6 +13,7 @@ pub mod build_script;
 mod compiled;
 pub mod diagnostic;
 mod emit;
+pub mod flywheel;
 pub mod hover;
 mod inverse;
 pub mod model;

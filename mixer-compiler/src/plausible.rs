@@ -25,7 +25,7 @@ use crate::diagnostic::Diagnostic;
 use crate::model::PairMap;
 
 /// The rules of one part of an airframe, those that may be the reason of others before these.
-const RULES: [fn(&Facts<'_>) -> Vec<Rule>; 17] = [
+const RULES: [fn(&Facts<'_>) -> Vec<Rule>; 18] = [
     pair::units,
     rotors::order,
     pair::thrust,
@@ -43,6 +43,7 @@ const RULES: [fn(&Facts<'_>) -> Vec<Rule>; 17] = [
     allocation::yaw,
     allocation::power_bias,
     vehicle::hover,
+    vehicle::rotor_inertia,
 ];
 
 /// Warnings of an airframe that compiles.

@@ -182,6 +182,8 @@ catalogue! {
     TooLight = 344,
     /// A rotor that hovers next to a limit of its throttle.
     HoverAtLimit = 345,
+    /// An inertia of a rotor that no propeller of such a thrust has.
+    RotorInertia = 346,
 }
 
 impl Code {

@@ -3,12 +3,47 @@
 use super::rule::{Facts, Rule};
 use crate::atmosphere::altitude_of;
 use crate::diagnostic::{Code, number, rounded};
+use crate::flywheel::Flywheel;
 
 /// Share of the largest bare thrust above which hover leaves too little for control.
 const HIGH: f64 = 0.8;
 
 /// Thrust over weight above which no vehicle is built: racing quadrotors have up to 14.
 const LIFTS: f64 = 20.0;
+
+/// How far the inertia of a rotor may be from the one that is estimated: the estimate is within a factor of two, a wrong unit is
+/// off by a hundred and more.
+const INERTIA_OFF: f64 = 10.0;
+
+/// An inertia of a rotor that is in another unit, or of something else.
+pub(super) fn rotor_inertia(facts: &Facts<'_>) -> Vec<Rule> {
+    let vehicle = facts.airframe.vehicle.as_ref();
+    let stated = vehicle.and_then(|vehicle| Some((vehicle.rotor_inertia_kg_m2?, vehicle.mass_kg)));
+    let Some((stated, mass_kg)) = stated else {
+        return Vec::new();
+    };
+    let Some(usual) = Flywheel::new(facts.airframe, mass_kg, None) else {
+        return Vec::new();
+    };
+    let usual = usual.inertia_kg_m2;
+    let rule = Rule::within(
+        Code::RotorInertia,
+        "vehicle.rotor_inertia_kg_m2",
+        stated,
+        [usual / INERTIA_OFF, usual * INERTIA_OFF],
+    );
+    vec![
+        rule.says(
+            format!(
+                "an inertia of {} kg m2, where a rotor of this thrust has about {usual:.0e}",
+                number(stated)
+            ),
+            "not a rotor of this thrust",
+            "kg m2 of one rotor with its motor's bell about its axis: 1 kg m2 is 1e7 g cm2; leave the key out where it is not known",
+        )
+        .unless_told(&[Code::PairUnits, Code::TooLight]),
+    ]
+}
 
 /// Too heavy to hover at the lowest voltage, or so light that it rises at idle at the highest, or
 /// with little thrust left at the reference voltage, in the thinnest air that it is to fly in.

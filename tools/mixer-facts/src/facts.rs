@@ -5,6 +5,7 @@ use std::fmt;
 use mixer_compiler::Compiled;
 use mixer_compiler::atmosphere::TOP_M;
 use mixer_compiler::diagnostic::rounded_up;
+use mixer_compiler::flywheel::Flywheel;
 use mixer_compiler::hover::HoverAt;
 use mixer_compiler::power::LevelPower;
 use serde::Serialize;
@@ -206,6 +207,7 @@ fn layer([least, greatest]: [f64; 2], [lowest, highest]: [usize; 2]) -> String {
 /// The vehicle in hover.
 fn hover(list: &mut List, compiled: &Compiled) {
     let hover = Hover::new(compiled);
+    let flywheel = Flywheel::of(&compiled.airframe);
     let missing = "add [vehicle] mass_kg to see hover and its margins";
     match &hover {
         None => list.say("mass", "", "", missing),
@@ -215,8 +217,19 @@ fn hover(list: &mut List, compiled: &Compiled) {
         }
     }
     .json("hover", &hover)
+    .json("flywheel", flywheel)
     .in_verdict();
     let Some(hover) = hover else { return };
+    if let Some(rotor) = flywheel {
+        let source = or_nothing(rotor.estimated_diameter_m, |diameter_m| {
+            format!(", estimated by the largest thrust: {diameter_m:.2} m")
+        });
+        let words = format!(
+            "T = J w / (2 Q) of {:.2} s in hover (J {:.1e} kg m2{source}): a step of yaw begins with {:.1} times its steady torque",
+            rotor.lead_s, rotor.inertia_kg_m2, rotor.first_over_steady
+        );
+        list.say("rotors' inertia", "", "", words).in_verdict();
+    }
     let over_weight = format!("{:.2}", hover.thrust_over_weight);
     list.say("thrust over weight", over_weight, "", " at most")
         .in_verdict();

@@ -1,8 +1,8 @@
 //! The battery: voltage falls with the charge that is drawn and, by the internal resistance, with
 //! the current.
 //!
-//! V = V_full - slope * charge - R I; a rotor's current goes with the cube of its throttle, as
-//! aerodynamic power goes with the cube of the speed.
+//! V = V_full - slope * charge - R I; a rotor's current goes with the cube of its speed, as
+//! aerodynamic power does.
 
 use nalgebra::SVector;
 
@@ -27,17 +27,17 @@ pub const PAPER: Battery = Battery {
     full_v: 16.6,
     slope_v_per_ah: 0.52,
     resistance_ohm: 0.025,
-    full_throttle_a: 19.0,
+    full_throttle_a: 11.5,
 };
 
 impl Battery {
-    /// Current of the pack at effective throttles in [0, 1], A.
-    pub fn current_a<const R: usize>(&self, throttle: &SVector<f64, R>) -> f64 {
-        throttle.map(|d| self.full_throttle_a * d * d * d).sum()
+    /// Current of the pack at speeds over those of full throttle, A.
+    pub fn current_a<const R: usize>(&self, speed: &SVector<f64, R>) -> f64 {
+        speed.map(|w| self.full_throttle_a * w * w * w).sum()
     }
 
     /// Voltage under load after `charge_ah` has been drawn, V.
-    pub fn voltage_v<const R: usize>(&self, charge_ah: f64, throttle: &SVector<f64, R>) -> f64 {
-        self.full_v - self.slope_v_per_ah * charge_ah - self.resistance_ohm * self.current_a(throttle)
+    pub fn voltage_v<const R: usize>(&self, charge_ah: f64, speed: &SVector<f64, R>) -> f64 {
+        self.full_v - self.slope_v_per_ah * charge_ah - self.resistance_ohm * self.current_a(speed)
     }
 }

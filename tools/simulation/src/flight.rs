@@ -26,8 +26,8 @@ const STEPS: usize = 5;
 /// Age of the position measurement in periods of the controller: 50 ms (section V-B).
 const DELAY: usize = 10;
 
-/// Throttle of all rotors at the start; the settling makes hover of it.
-const START_THROTTLE: f64 = 0.5;
+/// Speed of all rotors at the start; the settling makes hover of it.
+const START_SPEED: f64 = 0.5;
 
 /// One period of the controller.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -72,7 +72,7 @@ pub struct ClosedLoop {
 impl ClosedLoop {
     /// At the manoeuvre's start, the controller's tilt by `tilt`.
     pub fn new(airframe: &Airframe, tilt: Tilt, room: Room) -> Self {
-        let state = State::level(reference(-SETTLING_S).position, START_THROTTLE);
+        let state = State::level(reference(-SETTLING_S).position, START_SPEED);
         ClosedLoop {
             plant: Plant::new(airframe, BODY, battery::PAPER, room.mismatch()),
             controller: Controller::new(tilt),

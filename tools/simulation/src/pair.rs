@@ -40,7 +40,9 @@ impl Pair {
             return self.both(throttles);
         }
         let [u, l] = throttles.map(|d| d.max(self.idle));
-        let [share_u, share_l] = throttles.map(|d| (d / self.idle).clamp(0.0, 1.0));
+        let [share_u, share_l] = throttles
+            .map(|d| (d / self.idle).clamp(0.0, 1.0))
+            .map(|share| share * share);
         let parts = [
             (share_u * share_l, self.both([u, l])),
             (share_u * (1.0 - share_l), self.alone(0, u)),

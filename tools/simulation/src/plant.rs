@@ -1,27 +1,33 @@
 //! The plant: six degrees of freedom under the coaxial map of the airframe file.
 //!
-//! With R the rotation from body to world, m the mass, J the inertia, r_i and a_i position and
-//! thrust axis of unit i:
+//! With R the rotation from body to world, m the mass, I the inertia, r_i and a_i position and
+//! thrust axis of unit i, J the inertia of a rotor, n_u and n_l the speeds of its rotors:
 //!
 //! ```text
-//! m dv/dt     = m g e_z + R sum_i a_i f_i + F
-//! J dw/dt     = sum_i (r_i x a_i f_i - s_i Q_i a_i) - w x J w
-//! dq/dt       = q (0, w) / 2
-//! tau de_k/dt = (1 + mismatch_k) throttle_k - e_k
-//! f_i = (1 + flutter_i) c k_f(V) f(e_upper, e_lower),   Q_i = c k_Q(V) Q(e_upper, e_lower)
+//! m dv/dt = m g e_z + R sum_i a_i f_i + F
+//! I dw/dt = sum_i (r_i x a_i f_i - s_i Q_i a_i) - dH/dt - w x (I w + H)
+//! H       = -sum_i s_i J (n_u - n_l) a_i
+//! dq/dt   = q (0, w) / 2
+//! f_i     = (1 + flutter_i) c f(n_u, n_l; V, rho),   Q_i = c Q(n_u, n_l; V, rho)
 //! ```
 //!
-//! c is 1, or [the factor](Plant::scaled) by which every pair differs from the file. k_f and k_Q are the file's laws of the voltage. In [the air of an altitude](Plant::in_air) they and the throttles
-//! of the map are those of a [`motor`](crate::motor) instead, so that the mixer's laws are put to the test.
+//! The rotors are flywheels: what turns the frame is the reaction of the motors, of which the air takes s Q, and the rotors J dn/dt.
+//! Written for frame and rotors as one, that is the second line: I w + H changes by the torque of the air alone, and in the
+//! body's axes by its turning. The two rotors of a pair turn oppositely, so H is next to nothing as long as both
+//! turn alike. In yaw one speeds up and the other one slows down, and both reactions add to the torque of the air. dn/dt is that of a [`motor`](crate::motor) under
+//! `(1 + mismatch) throttle`.
 //!
-//! f and Q are eq. (1) with the f64 coefficients of the file: the map that the coaxial mixer
-//! inverts. Unlike the mixer it has no f32 tables, and its rotors lag and differ. Left out, since
-//! the paper gives nothing to model them by: drag, ground effect, wake between units, the rotors'
-//! own angular momentum (it cancels in a contra-rotating pair).
+//! c is 1, or [the factor](Plant::scaled) by which every pair differs from the file. f and Q are eq. (1) with the f64 coefficients of the file where its
+//! rotors have these speeds at the bench's voltage and density; elsewhere the motor says what becomes of them, not the mixer's laws, which are so put to the test.
+//!
+//! The share that each rotor has of Q is not known and not needed: the model of a motor's own load, k n^2, says how fast it follows, the
+//! map what the air does to the frame. k is that of the map: the slope of Q in hover as one rotor turns faster and the other slower.
+//!
+//! Left out, since
+//! the paper gives nothing to model them by: drag, ground effect, wake between units. The rotors' inertia about axes in their plane is the frame's.
 
-use mixer_compiler::airframe::TYPICAL_EXPONENT;
-use mixer_compiler::airframe::{Airframe, Correction};
-use mixer_compiler::atmosphere;
+use mixer_compiler::airframe::Airframe;
+use mixer_compiler::{atmosphere, flywheel};
 use nalgebra::{Quaternion, SVector, Vector3};
 
 use crate::battery::Battery;
@@ -31,6 +37,12 @@ use crate::pair::Pair;
 use crate::state::State;
 use crate::vehicle::{Body, GRAVITY_M_S2};
 
+/// Half the difference of throttles at which the slope of the torque is taken.
+const NEARBY: f64 = 1e-4;
+
+/// Steps in which load and voltage settle.
+const SETTLING: u32 = 30;
+
 /// One unit as the plant sees it.
 #[derive(Clone, Debug)]
 struct Unit {
@@ -38,6 +50,14 @@ struct Unit {
     axis: Vector3<f64>,
     spin_sign: f64,
     channels: [usize; 2],
+}
+
+impl Unit {
+    /// What the upper and the lower rotor have of a number per channel.
+    fn of<const R: usize>(&self, rotors: &SVector<f64, R>) -> [f64; 2] {
+        self.channels
+            .map(|channel| rotors.get(channel).copied().unwrap_or(0.0))
+    }
 }
 
 /// What the air does beyond the bench: held over one step.
@@ -63,8 +83,11 @@ impl<const R: usize> Default for Disturbance<R> {
 pub struct Plant<const R: usize> {
     units: Vec<Unit>,
     pair: Pair,
-    voltage: Option<Correction>,
-    motor: Option<Motor>,
+    motor: Motor,
+    /// J times the speed at full throttle at the reference, N m s.
+    momentum_nms: f64,
+    /// T in hover, s.
+    lead_s: f64,
     /// Density of the air on the bench, that of the sea level where the file has none.
     bench_kg_m3: f64,
     /// Thrust and torque of every pair over those of the file.
@@ -85,11 +108,25 @@ impl<const R: usize> Plant<R> {
             spin_sign: unit.spin_sign(airframe.pair.upper_spin),
             channels: [unit.upper_channel, unit.lower_channel],
         });
+        let units: Vec<Unit> = units.collect();
+        let pair = Pair::new(&airframe.pair, &airframe.throttle);
+        let upwards = units.iter().map(|unit| -unit.axis.z).sum::<f64>();
+        let share_n = body.mass_kg * GRAVITY_M_S2 / upwards;
+        let hover = crossing(|throttle| pair.efforts([throttle; 2])[0] - share_n).unwrap_or(1.0);
+        let hover = hover.clamp(airframe.throttle.min + NEARBY, 1.0);
+        let reference_v = airframe.voltage.as_ref().map(|voltage| voltage.reference);
+        let motor = Motor::new(flywheel::exponent(airframe), NO_LOAD, reference_v);
+        let speed = motor.speed_at_reference(hover);
+        let motor = motor.with_lag(body.rotor_lag_s, speed);
+        // Of a torque k (n_l^2 - n_u^2), by its slope where both throttles part.
+        let [less, more] = [-NEARBY, NEARBY].map(|d| pair.efforts([hover - d, hover + d])[1]);
+        let torque_nm = motor.slope(speed) * (more - less) / (8.0 * NEARBY * speed);
         Plant {
-            units: units.collect(),
-            pair: Pair::new(&airframe.pair, &airframe.throttle),
-            voltage: airframe.voltage.clone(),
-            motor: None,
+            units,
+            pair,
+            motor,
+            momentum_nms: motor.momentum_nms(torque_nm),
+            lead_s: body.rotor_lag_s * motor.first_over_steady(speed),
             bench_kg_m3: airframe
                 .air
                 .as_ref()
@@ -101,22 +138,13 @@ impl<const R: usize> Plant<R> {
         }
     }
 
-    /// The same vehicle in air of a density, kg/m3, its rotors on motors with [`NO_LOAD`]. The ohmic share is that of the thrust's exponent in the file.
+    /// The same vehicle in air of a density, kg/m3.
     ///
     /// # Errors
-    /// An exponent that is not a motor's.
+    /// A voltage's exponent that is not a motor's.
     pub fn in_air(self, density_kg_m3: f64) -> Result<Self, String> {
-        let voltage = self.voltage.as_ref();
-        let exponent = voltage.map_or(TYPICAL_EXPONENT, |voltage| voltage.exponents()[0]);
-        let reference_v = voltage.map(|voltage| voltage.reference);
-        let sigma = density_kg_m3 / self.bench_kg_m3;
-        let motor = Motor::new(exponent, NO_LOAD, reference_v, sigma).ok_or_else(|| {
-            format!("thrust follows the voltage by the power {exponent:.2}: motors have 1 to 2")
-        })?;
-        Ok(Plant {
-            motor: Some(motor),
-            ..self
-        })
+        let motor = self.motor.in_air(density_kg_m3 / self.bench_kg_m3)?;
+        Ok(Plant { motor, ..self })
     }
 
     /// The same vehicle, thrust and torque of every pair multiplied by a factor.
@@ -125,40 +153,69 @@ impl<const R: usize> Plant<R> {
         Plant { scale, ..self }
     }
 
+    /// T = J w / (2 Q) and the lag of a rotor in hover at the reference, s: their ratio is that of the torques at the begin and
+    /// at the end of a step of yaw.
+    pub fn response_s(&self) -> [f64; 2] {
+        [self.lead_s, self.body.rotor_lag_s]
+    }
+
+    /// The state with all rotors in steady state under `command`.
+    #[must_use]
+    pub fn steady(&self, state: &State<R>, command: &SVector<f64, R>) -> State<R> {
+        let mut state = *state;
+        // The load sets the voltage, the voltage the speeds.
+        for _ in 0..SETTLING {
+            let volts = self.voltage_v(&state);
+            state.speed = command.map(|throttle| self.motor.speed(throttle, volts));
+        }
+        state
+    }
+
+    /// Throttle of all rotors that carries the weight with the battery full; `None` where full throttle does not.
+    pub fn hover_throttle(&self) -> Option<f64> {
+        let rotors = 2 * self.units.len();
+        let alike = |throttle| SVector::from_fn(|channel, _| if channel < rotors { throttle } else { 0.0 });
+        let lift = |throttle: f64| {
+            let state = self.steady(&State::level(Vector3::zeros(), 0.0), &alike(throttle));
+            -self.rotor_wrench(&state, &SVector::zeros()).0.z
+        };
+        crossing(|throttle| lift(throttle) - self.body.mass_kg * GRAVITY_M_S2)
+    }
+
     /// Current of the battery, A.
     pub fn current_a(&self, state: &State<R>) -> f64 {
-        self.battery.current_a(&state.throttle)
+        self.battery.current_a(&state.speed)
     }
 
     /// Voltage of the battery under the present load, V.
     pub fn voltage_v(&self, state: &State<R>) -> f64 {
-        self.battery.voltage_v(state.charge_ah, &state.throttle)
+        self.battery.voltage_v(state.charge_ah, &state.speed)
     }
 
-    /// Force (N) and torque (N m) of the rotors in the body.
+    /// Force (N) and torque (N m) of the air on the rotors, in the body.
     pub fn rotor_wrench(&self, state: &State<R>, flutter: &SVector<f64, R>) -> (Vector3<f64>, Vector3<f64>) {
         let volts = self.voltage_v(state);
-        let [k_f, k_q] = self
-            .voltage
-            .as_ref()
-            .map_or([1.0; 2], |voltage| voltage.factors(volts));
-        let effective = |channel: usize| state.throttle.get(channel).copied().unwrap_or(0.0);
         let (mut force, mut torque) = (Vector3::zeros(), Vector3::zeros());
         for (unit, flutter) in self.units.iter().zip(flutter) {
-            let throttles = unit.channels.map(effective);
-            let ([k_f, k_q], throttles) = match &self.motor {
-                None => ([k_f, k_q], throttles),
-                Some(motor) => {
-                    let (factor, throttles) = motor.at_reference(throttles, volts);
-                    ([factor; 2], throttles)
-                }
-            };
-            let [f, q] = self.pair.efforts(throttles).map(|effort| self.scale * effort);
-            let thrust = unit.axis * ((1.0 + flutter) * k_f * f);
+            let (factor, throttles) = self.motor.at_reference(unit.of(&state.speed), volts);
+            let [f, q] = self
+                .pair
+                .efforts(throttles)
+                .map(|effort| self.scale * factor * effort);
+            let thrust = unit.axis * ((1.0 + flutter) * f);
             force += thrust;
-            torque += unit.position_m.cross(&thrust) - unit.axis * (unit.spin_sign * k_q * q);
+            torque += unit.position_m.cross(&thrust) - unit.axis * (unit.spin_sign * q);
         }
         (force, torque)
+    }
+
+    /// Angular momentum of the rotors in the frame, H, or its change, of speeds or their changes; N m s.
+    pub fn rotor_momentum(&self, speed: &SVector<f64, R>) -> Vector3<f64> {
+        let of_unit = |unit: &Unit| {
+            let [upper, lower] = unit.of(speed);
+            unit.axis * (-unit.spin_sign * self.momentum_nms * (upper - lower))
+        };
+        self.units.iter().map(of_unit).sum()
     }
 
     /// The state `step` seconds later, `command` (throttle per channel) and `disturbance` held.
@@ -169,8 +226,8 @@ impl<const R: usize> Plant<R> {
         disturbance: &Disturbance<R>,
         step: f64,
     ) -> State<R> {
-        let target = command + command.component_mul(&self.mismatch);
-        let mut next = runge_kutta(state, step, |state| self.derivative(state, &target, disturbance));
+        let driven = command + command.component_mul(&self.mismatch);
+        let mut next = runge_kutta(state, step, |state| self.derivative(state, &driven, disturbance));
         next.attitude = next.rotation().into_inner();
         next
     }
@@ -178,24 +235,43 @@ impl<const R: usize> Plant<R> {
     fn derivative(
         &self,
         state: &State<R>,
-        target: &SVector<f64, R>,
+        driven: &SVector<f64, R>,
         disturbance: &Disturbance<R>,
     ) -> State<R> {
+        let volts = self.voltage_v(state);
         let (force, torque) = self.rotor_wrench(state, &disturbance.flutter);
+        let speed = state.speed.zip_map(driven, |speed, throttle| {
+            self.motor.acceleration(speed, throttle, volts)
+        });
         let gravity = Vector3::z() * GRAVITY_M_S2;
         let Body {
             mass_kg,
             inertia_kg_m2,
-            rotor_lag_s,
+            ..
         } = self.body;
-        let momentum = inertia_kg_m2.component_mul(&state.rate);
+        let momentum = inertia_kg_m2.component_mul(&state.rate) + self.rotor_momentum(&state.speed);
+        let turning = torque - self.rotor_momentum(&speed) - state.rate.cross(&momentum);
         State {
             position: state.velocity,
             velocity: gravity + (state.rotation() * force + disturbance.force_n) / mass_kg,
             attitude: state.attitude * Quaternion::from_imag(state.rate) * 0.5,
-            rate: (torque - state.rate.cross(&momentum)).component_div(&inertia_kg_m2),
-            throttle: (target - state.throttle) / rotor_lag_s,
+            rate: turning.component_div(&inertia_kg_m2),
+            speed,
             charge_ah: self.current_a(state) / 3600.0,
         }
     }
+}
+
+/// The throttle from 0 to 1 at which what grows with it becomes positive; `None` where it does not.
+fn crossing(of: impl Fn(f64) -> f64) -> Option<f64> {
+    let (mut low, mut high) = (0.0, 1.0);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        (low, high) = if of(middle) < 0.0 {
+            (middle, high)
+        } else {
+            (low, middle)
+        };
+    }
+    (of(1.0) > 0.0).then_some(0.5 * (low + high))
 }

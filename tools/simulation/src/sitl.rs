@@ -78,8 +78,9 @@ pub fn run(arguments: &Arguments) -> Result<(), String> {
             "--fail: there is no output {output}, the vehicle has 0 to {last}"
         ));
     }
+    let [lead_s, lag_s] = vehicle.plant.response_s();
     eprintln!(
-        "{}: {} rotors, {} kg, hover at a throttle of {:.4}",
+        "{}: {} rotors (T {lead_s:.3} s, lag {lag_s:.3} s), {} kg, hover at a throttle of {:.4}",
         vehicle.name, vehicle.rotors, vehicle.mass_kg, vehicle.hover_throttle
     );
     let mut sensors = Sensors::new(arguments.noise, arguments.seed);

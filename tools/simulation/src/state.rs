@@ -13,21 +13,21 @@ pub struct State<const R: usize> {
     pub attitude: Quaternion<f64>,
     /// Angular rate in the body, rad/s.
     pub rate: Vector3<f64>,
-    /// Effective throttle per channel: the commanded one behind the rotor's lag.
-    pub throttle: SVector<f64, R>,
+    /// Speed per channel over that of full throttle at the reference voltage.
+    pub speed: SVector<f64, R>,
     /// Charge drawn from the battery, A h.
     pub charge_ah: f64,
 }
 
 impl<const R: usize> State<R> {
-    /// At rest and level at `position` with all rotors at `throttle` and a full battery.
-    pub fn level(position: Vector3<f64>, throttle: f64) -> Self {
+    /// At rest and level at `position` with all rotors at `speed` and a full battery.
+    pub fn level(position: Vector3<f64>, speed: f64) -> Self {
         State {
             position,
             velocity: Vector3::zeros(),
             attitude: Quaternion::identity(),
             rate: Vector3::zeros(),
-            throttle: SVector::repeat(throttle),
+            speed: SVector::repeat(speed),
             charge_ah: 0.0,
         }
     }
@@ -39,7 +39,7 @@ impl<const R: usize> State<R> {
             velocity: self.velocity + other.velocity * factor,
             attitude: self.attitude + other.attitude * factor,
             rate: self.rate + other.rate * factor,
-            throttle: self.throttle + other.throttle * factor,
+            speed: self.speed + other.speed * factor,
             charge_ah: self.charge_ah + other.charge_ah * factor,
         }
     }

@@ -1,14 +1,24 @@
 //! The plant obeys mechanics, and both mixers are what they claim to be.
 
+use mixer_compiler::Source;
+use mixer_compiler::airframe::Airframe;
 use mixer_compiler::model::PairMap;
 use mixer_compiler::model::effectiveness::Effectiveness;
 use nalgebra::{DVector, SVector, Vector3, Vector4};
-use simulation::battery;
+use simulation::battery::{self, Battery};
 use simulation::conventional::ConventionalMixer;
 use simulation::mixer::{Method, Mixer};
 use simulation::plant::{Disturbance, Plant};
 use simulation::state::State;
 use simulation::vehicle::{self, BODY, GRAVITY_M_S2, INERTIA_KG_M2, ROTORS, WEIGHT_N};
+
+/// A supply at the voltage of the paper's bench, whatever the load.
+const REFERENCE: Battery = Battery {
+    full_v: 14.8,
+    slope_v_per_ah: 0.0,
+    resistance_ohm: 0.0,
+    ..battery::PAPER
+};
 
 fn nominal_plant() -> Plant<ROTORS> {
     Plant::new(
@@ -56,18 +66,11 @@ fn without_rotors_it_falls() {
 #[test]
 fn thrust_equal_to_weight_hovers() {
     let plant = nominal_plant();
-    let hover = |throttle| State::level(Vector3::zeros(), throttle);
-    let lift = |throttle| -plant.rotor_wrench(&hover(throttle), &SVector::zeros()).0.z;
-    let (mut low, mut high) = (0.1, 1.0);
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        (low, high) = if lift(middle) < WEIGHT_N {
-            (middle, high)
-        } else {
-            (low, middle)
-        };
-    }
-    let end = run(&plant, hover(low), low, 0.001, 200);
+    let throttle = plant.hover_throttle().unwrap();
+    let hover = plant.steady(&State::level(Vector3::zeros(), 0.0), &SVector::repeat(throttle));
+    let lift = -plant.rotor_wrench(&hover, &SVector::zeros()).0.z;
+    assert!((lift / WEIGHT_N - 1.0).abs() < 1e-12, "{lift}");
+    let end = run(&plant, hover, throttle, 0.001, 200);
     // Within 0.2 s the battery loses half a millivolt: 60 ppm of the thrust, 0.1 mm/s.
     assert!(
         end.velocity.norm() < 2e-4 && end.position.norm() < 2e-5,
@@ -76,7 +79,7 @@ fn thrust_equal_to_weight_hovers() {
     // Four alternating units cancel each other's torque.
     assert!(end.rate.norm() < 1e-12, "{end:?}");
     // One per cent more throttle climbs.
-    assert!(run(&plant, hover(low), 1.01 * low, 0.001, 200).velocity.z < -0.01);
+    assert!(run(&plant, hover, 1.01 * throttle, 0.001, 200).velocity.z < -0.01);
 }
 
 #[test]
@@ -93,6 +96,83 @@ fn torque_free_rotation_conserves_angular_momentum_and_energy() {
     assert!(lost < 1e-9, "{lost:e}");
     let lost = (energy(&end) / energy(&state) - 1.0).abs();
     assert!(lost < 1e-9, "{lost:e}");
+}
+
+/// Without air the motors turn frame and rotors against each other: their momentum stays, while the frame yaws.
+#[test]
+fn without_air_frame_and_rotors_conserve_their_angular_momentum() {
+    let plant = nominal_plant().in_air(0.0).unwrap();
+    let start = State {
+        // Rolling and pitching, so that the rotors' momentum turns with the frame.
+        rate: Vector3::new(1.0, -0.7, 0.0),
+        ..State::level(Vector3::zeros(), 0.5)
+    };
+    // The rotors of one sense against those of the other.
+    let airframe = vehicle::airframe().unwrap();
+    let mut command = SVector::<f64, ROTORS>::repeat(0.3);
+    for unit in &airframe.units {
+        let sense = 0.2 * unit.spin_sign(airframe.pair.upper_spin);
+        command[unit.upper_channel] += sense;
+        command[unit.lower_channel] -= sense;
+    }
+    let momentum = |state: &State<ROTORS>| {
+        let frame = INERTIA_KG_M2.component_mul(&state.rate);
+        state.rotation() * (frame + plant.rotor_momentum(&state.speed))
+    };
+    let mut state = start;
+    for _ in 0..1000 {
+        state = plant.step(&state, &command, &Disturbance::default(), 0.001);
+    }
+    let rotors = plant.rotor_momentum(&state.speed).norm() / momentum(&start).norm();
+    assert!(state.rate.z.abs() > 0.1 && rotors > 0.1, "{state:?} {rotors}");
+    let lost = (momentum(&state) - momentum(&start)).norm() / momentum(&start).norm();
+    assert!(lost < 1e-9, "{lost:e}");
+}
+
+/// A step of yaw in hover: its torque on the frame is at first r times the one that lasts, of its sense, and falls with the lag.
+#[test]
+fn yaw_begins_with_the_reaction_of_the_rotors() {
+    for (exponent, least, most) in [(1.6, 2.5, 3.4), (1.75, 4.0, 5.8), (1.9, 10.0, 15.0)] {
+        let file = format!("{}/../../airframes/isae-x8.toml", env!("CARGO_MANIFEST_DIR"));
+        let text = std::fs::read_to_string(&file)
+            .unwrap()
+            .replace("_exponent = 1.75", &format!("_exponent = {exponent}"));
+        let airframe = Airframe::read(&Source::new(file, text)).unwrap();
+        let plant = Plant::<ROTORS>::new(&airframe, BODY, REFERENCE, SVector::zeros());
+        let throttle = plant.hover_throttle().unwrap();
+        let mut command = SVector::<f64, ROTORS>::repeat(throttle);
+        let hover = plant.steady(&State::level(Vector3::zeros(), 0.0), &command);
+        for unit in &airframe.units {
+            let sense = 1e-3 * unit.spin_sign(airframe.pair.upper_spin);
+            command[unit.upper_channel] -= sense;
+            command[unit.lower_channel] += sense;
+        }
+        let torque = |state: &State<ROTORS>| {
+            let dt = 1e-6;
+            let next = plant.step(state, &command, &Disturbance::default(), dt);
+            (next.rate.z - state.rate.z) / dt * INERTIA_KG_M2.z
+        };
+        let first = torque(&hover);
+        let steady = plant
+            .rotor_wrench(&plant.steady(&hover, &command), &SVector::zeros())
+            .1
+            .z;
+        let ratio = first / steady;
+        let [lead_s, lag_s] = plant.response_s();
+        let formula = lead_s / lag_s;
+        println!("{exponent}: {ratio} {formula}");
+        assert!(
+            first > 0.0 && (ratio / formula - 1.0).abs() < 0.02,
+            "{exponent}: {ratio} {formula}"
+        );
+        assert!((least..most).contains(&ratio), "{exponent}: {ratio}");
+        let mut state = hover;
+        for _ in 0..50 {
+            state = plant.step(&state, &command, &Disturbance::default(), 0.001);
+        }
+        let left = (torque(&state) - steady) / (first - steady);
+        assert!((left - libm::exp(-1.0)).abs() < 0.02, "{exponent}: {left}");
+    }
 }
 
 #[test]
@@ -113,23 +193,19 @@ fn one_millisecond_is_fine_enough() {
 
 #[test]
 fn the_plant_gives_the_wrench_that_the_coaxial_mixer_was_asked_for() {
-    let (airframe, plant) = (vehicle::airframe().unwrap(), nominal_plant());
+    let airframe = vehicle::airframe().unwrap();
+    let plant = Plant::<ROTORS>::new(&airframe, BODY, REFERENCE, SVector::zeros());
     let mixer = Mixer::new(Method::Coaxial, &airframe).unwrap();
     for asked in [
         [0.0, 0.0, 0.0, 31.4],
         [0.5, -0.3, 0.2, 31.4],
         [-1.0, 0.5, -0.3, 40.0],
     ] {
-        let mut state = State::level(Vector3::zeros(), 0.5);
-        // The load sets the voltage, the voltage the throttles.
-        for _ in 0..20 {
-            let (throttle, saturated) = mixer.mix(&asked.into(), plant.voltage_v(&state)).unwrap();
-            assert!(!saturated);
-            state.throttle = throttle;
-        }
+        let (throttle, saturated) = mixer.mix(&asked.into(), REFERENCE.full_v).unwrap();
+        assert!(!saturated);
+        let state = plant.steady(&State::level(Vector3::zeros(), 0.0), &throttle);
         let (force, torque) = plant.rotor_wrench(&state, &SVector::zeros());
-        // The file's tolerance per unit, times k_f < 1.25: 0.0125 N on four units, 1.25e-4 N m
-        // likewise.
+        // The file's tolerance per unit, and a little: 0.0125 N on four units, 1.25e-4 N m likewise.
         for (axis, arm) in [(0, 0.3182), (1, 0.3182)] {
             assert!(
                 (torque[axis] - asked[axis]).abs() < 4.0 * 0.0125 * arm,

@@ -74,6 +74,13 @@ pub struct Arguments {
     /// Moments of inertia, kg m2, instead of the file's
     #[arg(long, value_name = "X,Y,Z", value_parser = inertia)]
     pub inertia: Option<[f64; 3]>,
+    /// Time constant of a rotor's speed in hover, s; without it by the inertia
+    #[arg(long, value_name = "SECONDS", value_parser = lag)]
+    pub rotor_lag: Option<f64>,
+    /// Inertia of a rotor with its motor's bell, kg m2; without it the file's `rotor_inertia_kg_m2`, else estimated from the
+    /// largest thrust
+    #[arg(long, value_name = "KG_M2", value_parser = positive, conflicts_with = "rotor_lag")]
+    pub rotor_inertia: Option<f64>,
     /// Pulse widths of throttle 0 and 1 in ArduPilot, MOT_PWM_MIN and MOT_PWM_MAX, or Betaflight
     #[arg(long, value_name = "LOW,HIGH", default_value = "1000,2000", value_parser = pulses)]
     pub pwm_range: [f64; 2],
@@ -93,6 +100,9 @@ pub struct Arguments {
 
 /// Altitudes to fly at, m.
 const ALTITUDES_M: [f64; 2] = [-1000.0, atmosphere::TOP_M];
+
+/// Time constants of rotors, s: faster ones need finer steps.
+pub const LAGS_S: [f64; 2] = [0.005, 1.0];
 
 /// A rotor that stops.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -141,6 +151,14 @@ fn density(text: &str) -> Result<f64, String> {
         .contains(&value)
         .then_some(value)
         .ok_or_else(|| format!("must be from {least:.3} to {most:.3} kg/m3"))
+}
+
+fn lag(text: &str) -> Result<f64, String> {
+    let (value, [low, high]) = (number(text)?, LAGS_S);
+    (low..=high)
+        .contains(&value)
+        .then_some(value)
+        .ok_or_else(|| format!("must be from {low} to {high} s"))
 }
 
 fn failure(text: &str) -> Result<Failure, String> {

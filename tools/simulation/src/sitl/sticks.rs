@@ -121,7 +121,7 @@ impl Sticks {
 impl Pilot for Sticks {
     fn update(&mut self, world: &World) -> Result<(), String> {
         let time_s = world.time_s();
-        let turns = world.state.throttle.max() > 0.01;
+        let turns = world.state.speed.max() > 0.01;
         match self.phase {
             _ if self.plan.is_none() => {}
             Phase::Arming if time_s > ARMED_S => {

@@ -5,11 +5,12 @@ use std::path::Path;
 use mixer_compiler::Source;
 use mixer_compiler::airframe::Airframe;
 use mixer_compiler::atmosphere;
+use mixer_compiler::flywheel::Flywheel;
 use nalgebra::{SVector, Vector3};
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::SeedableRng;
 
-use super::arguments::Arguments;
+use super::arguments::{Arguments, LAGS_S};
 use crate::air::normal;
 use crate::battery::Battery;
 use crate::plant::Plant;
@@ -28,9 +29,6 @@ const MASS_AT_UNITS: f64 = 0.25;
 
 /// Least radius of gyration, m: what a single unit, all of it in the middle, is given.
 const LEAST_GYRATION_M: f64 = 0.05;
-
-/// Time constant of a rotor, s.
-const ROTOR_LAG_S: f64 = 0.05;
 
 /// Power in hover per mass where the file has no `[pair.power]`, W/kg: as the paper's vehicle.
 const HOVER_W_PER_KG: f64 = 80.0;
@@ -95,10 +93,31 @@ impl Vehicle {
         let stated = own.vehicle.as_ref().and_then(|vehicle| vehicle.inertia_kg_m2);
         let stated = arguments.inertia.or(stated).map(Vector3::from);
         let inertia_kg_m2 = stated.unwrap_or_else(|| inertia(&own, mass_kg));
+        let weight = mass_kg * GRAVITY_M_S2;
+        let too_heavy = || {
+            format!(
+                "{path}: the vehicle weighs {weight:.1} N, which the rotors do not lift: a smaller mass, or other rotors"
+            )
+        };
+        let rotor_inertia = own
+            .vehicle
+            .as_ref()
+            .and_then(|vehicle| vehicle.rotor_inertia_kg_m2);
+        let flywheel = Flywheel::new(&flown, mass_kg, arguments.rotor_inertia.or(rotor_inertia));
+        let rotor_lag_s = match arguments.rotor_lag {
+            Some(lag_s) => lag_s,
+            None => flywheel.ok_or_else(too_heavy)?.lag_s(),
+        };
+        let [least, most] = LAGS_S;
+        if !(least..=most).contains(&rotor_lag_s) {
+            return Err(format!(
+                "{path}: with this inertia rotors have a lag of {rotor_lag_s:.4} s, beyond {least} to {most} s: give another --rotor-inertia, or --rotor-lag"
+            ));
+        }
         let body = Body {
             mass_kg,
             inertia_kg_m2,
-            rotor_lag_s: ROTOR_LAG_S,
+            rotor_lag_s,
         };
         let reference_v = own.voltage.as_ref().map(|voltage| voltage.reference);
         let full_v = arguments.volts.or(reference_v).unwrap_or(ANY_VOLTAGE_V);
@@ -123,15 +142,17 @@ impl Vehicle {
         };
         // Without resistance first: the throttle in hover sets the current.
         let rough = plant(battery)?;
-        let hover = |plant: &Plant<MOST_ROTORS>| {
-            hover(plant, rotors, mass_kg).map_err(|reason| format!("{path}: {reason}"))
-        };
+        let hover = |plant: &Plant<MOST_ROTORS>| plant.hover_throttle().ok_or_else(too_heavy);
         let hover_throttle = hover(&rough)?;
+        let state = rough.steady(
+            &State::level(Vector3::zeros(), 0.0),
+            &alike(hover_throttle, rotors),
+        );
         let power_w = flown
             .power_w(&vec![hover_throttle; rotors])
             .unwrap_or(HOVER_W_PER_KG * mass_kg);
-        let cube = hover_throttle * hover_throttle * hover_throttle;
-        battery.full_throttle_a = power_w / (full_v * rotors as f64 * cube);
+        let cubes = state.speed.map(|speed| speed * speed * speed).sum();
+        battery.full_throttle_a = power_w / (full_v * cubes);
         battery.resistance_ohm = arguments.resistance;
         let plant = plant(battery)?;
         let hover_throttle = hover(&plant)?;
@@ -181,32 +202,6 @@ fn spread(size: f64, seed: u64, rotors: usize) -> Throttles {
 /// All rotors at one throttle.
 pub fn alike(throttle: f64, rotors: usize) -> Throttles {
     Throttles::from_fn(|rotor, _| if rotor < rotors { throttle } else { 0.0 })
-}
-
-/// Throttle of all rotors that carries the weight.
-fn hover(plant: &Plant<MOST_ROTORS>, rotors: usize, mass_kg: f64) -> Result<f64, String> {
-    let lift = |throttle: f64| {
-        let mut state = State::level(Vector3::zeros(), 0.0);
-        state.throttle = alike(throttle, rotors);
-        -plant.rotor_wrench(&state, &SVector::zeros()).0.z
-    };
-    let weight = mass_kg * GRAVITY_M_S2;
-    if lift(1.0) <= weight {
-        return Err(format!(
-            "the rotors lift {:.1} N at full throttle, the vehicle weighs {weight:.1} N: a smaller mass, or other rotors",
-            lift(1.0)
-        ));
-    }
-    let (mut low, mut high) = (0.0, 1.0);
-    for _ in 0..50 {
-        let middle = 0.5 * (low + high);
-        (low, high) = if lift(middle) < weight {
-            (middle, high)
-        } else {
-            (low, middle)
-        };
-    }
-    Ok(0.5 * (low + high))
 }
 
 #[cfg(test)]
@@ -268,8 +263,8 @@ mod tests {
 
     /// Force and torque of all rotors at one throttle.
     fn wrench(vehicle: &Vehicle, throttle: f64) -> (Vector3<f64>, Vector3<f64>) {
-        let mut state = State::level(Vector3::zeros(), 0.0);
-        state.throttle = alike(throttle, vehicle.rotors);
+        let state = State::level(Vector3::zeros(), 0.0);
+        let state = vehicle.plant.steady(&state, &alike(throttle, vehicle.rotors));
         vehicle.plant.rotor_wrench(&state, &SVector::zeros())
     }
 
@@ -304,6 +299,30 @@ mod tests {
     }
 
     #[test]
+    fn lag_and_inertia_of_a_rotor_are_one_number() {
+        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/simulator/x8.toml");
+        let of = |flags: &[&str]| vehicle(Path::new(file), flags).map(|vehicle| vehicle.plant.response_s());
+        let [lead_s, lag_s] = of(&["--rotor-inertia", "4e-4"]).unwrap();
+        // In hover an exponent of 1.75 at a throttle of 0.8 is some 1.8.
+        assert!((lead_s / lag_s - 5.3).abs() < 0.2, "{lead_s} {lag_s}");
+        for (flags, factor) in [
+            (["--rotor-inertia", "8e-4"], 2.0),
+            (["--rotor-lag", &lag_s.to_string()], 1.0),
+        ] {
+            let found = of(&flags).unwrap();
+            assert!(
+                (found[0] / lead_s - factor).abs() < 1e-9 && (found[1] / lag_s - factor).abs() < 1e-9,
+                "{found:?}"
+            );
+        }
+        // 16.2 inch.
+        let [estimated_s, _] = of(&[]).unwrap();
+        assert!((0.8..1.3).contains(&(estimated_s / lead_s)), "{estimated_s}");
+        let refusal = of(&["--rotor-inertia", "1e-6"]).unwrap_err();
+        assert!(refusal.contains("--rotor-lag"), "{refusal}");
+    }
+
+    #[test]
     fn an_inertia_that_is_not_stated_is_estimated() {
         let airframe = crate::vehicle::airframe().unwrap();
         let estimated = inertia(&airframe, MASS_KG).component_div(&INERTIA_KG_M2);
@@ -327,8 +346,10 @@ mod tests {
             "5",
         ];
         let vehicle = vehicle(Path::new(file), &flags).unwrap();
-        let mut state = State::level(Vector3::zeros(), 0.0);
-        state.throttle = alike(vehicle.hover_throttle, vehicle.rotors);
+        let state = State::level(Vector3::zeros(), 0.0);
+        let mut state = vehicle
+            .plant
+            .steady(&state, &alike(vehicle.hover_throttle, vehicle.rotors));
         // 80 W/kg: some 15.4 A, which take 0.39 V.
         let sag = 16.6 - vehicle.plant.voltage_v(&state);
         assert!((0.38..0.45).contains(&sag), "{sag}");

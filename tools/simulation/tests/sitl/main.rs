@@ -425,6 +425,7 @@ fn what_cannot_be_done_is_said() {
         &["--px4", "--ardupilot"],
         &["--px4", "--inertia", "1,2"],
         &["--px4", "--density", "5"],
+        &["--px4", "--rotor-lag", "0.05", "--rotor-inertia", "3e-4"],
         &["--px4", "--density", "0.9", "--altitude", "3000"],
     ] {
         assert_eq!(server::run(arguments).status.code(), Some(2), "{arguments:?}");

@@ -1,0 +1,150 @@
+//! Rotors as flywheels: what a step of yaw begins with, and how fast rotors follow.
+//!
+//! Of a motor's voltage the share s is lost in its resistance where the rotor turns, the rest is back-EMF. At a
+//! step of the throttle the speed stays and the current jumps; the motor's torque, whose reaction turns the
+//! frame, begins with r times the change that it ends with, and follows the speed down to it with the lag tau. With J the
+//! inertia of a rotor, w its speed and Q its torque:
+//!
+//! ```text
+//! r = (1 + s) / (2 s),   T = r tau = J w / (2 Q)
+//! ```
+//!
+//! Thrust follows the voltage by the power 2 / (1 + s). As w and w^2 share the voltage d (d throttle),
+//! s / (1 - s)^2 is proportional to d: the power falls from 2 at low throttle.
+//!
+//! w and J are not in an airframe file, or need not be. Both follow from the largest thrust of a rotor, since
+//! propellers of multirotors are alike: their tips run at [`TIP_M_S`] at full throttle and they carry [`LOADING_N_M2`] there.
+
+use serde::Serialize;
+
+use crate::airframe::{Airframe, TYPICAL_EXPONENT};
+use crate::model::PairMap;
+
+/// Throttle at which a motor has the voltage's exponent that least squares over a bench's map finds: large thrusts weigh
+/// most there. Found on maps of ten systems at two voltages, one after the other simulated.
+const EXPONENT_THROTTLE: f64 = 0.8;
+
+/// Exponents of motors, and those that are taken for them: nearer to the ends one would be all resistance, or without any.
+const MOTORS: [f64; 2] = [1.0, 2.0];
+const TAKEN: [f64; 2] = [1.05, 1.95];
+
+/// Speed of the tips at full throttle, m/s: 108, 133, 139 and 123 on four systems of 11, 15, 16.2 and 22 inch (Coaxial-Benchmarking-Platform,
+/// Buzzatto and Liarokapis 2022).
+const TIP_M_S: f64 = 125.0;
+
+/// Thrust of one rotor alone at full throttle over the square of its diameter, N/m2: 146, 158, 148 and 120 there.
+const LOADING_N_M2: f64 = 140.0;
+
+/// Thrust of a pair at full throttle over that of one of its rotors alone: 1.54 to 1.64 there.
+const PAIR_OVER_ALONE: f64 = 1.6;
+
+/// Mass of a propeller over the square of its diameter, kg/m2: makers state 12 g for 10 inch (APC 10x4.7), 24 and 25 g for
+/// 15 and 16 inch (T-Motor MF1503, P16x5.4), and for 28 inch 59 g (NS28x9.2) and, folding, 128 g (FA28.2x9.2).
+const MASS_KG_M2: f64 = 0.16;
+
+/// Inertia over mass and square of the diameter, a rod's. Blades taper, which takes off some
+/// tenths; the motor's bell adds about one.
+const ROD: f64 = 1.0 / 12.0;
+
+/// A rotor in hover, at the reference voltage.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct Flywheel {
+    /// J, of a rotor and its motor's bell, kg m2.
+    pub inertia_kg_m2: f64,
+    /// The propeller's diameter that J is estimated from, m; `None` where J is given.
+    pub estimated_diameter_m: Option<f64>,
+    /// w, rad/s, estimated from the largest thrust, within some 15 %.
+    pub speed_rad_s: f64,
+    /// Q, N m: by the slope of the pair's torque as one rotor turns faster and the other slower.
+    pub torque_nm: f64,
+    /// T, s.
+    pub lead_s: f64,
+    /// r: torque on the frame at first over that of the end, in a step of yaw.
+    pub first_over_steady: f64,
+}
+
+impl Flywheel {
+    /// A rotor of an airframe of a mass, kg, and of an inertia, kg m2, if that is known; `None` where the vehicle does not hover.
+    pub fn new(airframe: &Airframe, mass_kg: f64, inertia_kg_m2: Option<f64>) -> Option<Flywheel> {
+        let map = PairMap::new(&airframe.pair, &airframe.throttle);
+        let [_, full] = map.range();
+        let upwards: f64 = airframe.units.iter().map(|unit| -unit.axis[2]).sum();
+        let hover_n = mass_kg * crate::airframe::GRAVITY / upwards;
+        let full_n = map.efforts([full; 2])[0];
+        let hover = throttle_of(&map, hover_n).filter(|hover| *hover <= full)?;
+        let [less, more] = [-NEARBY, NEARBY].map(|d| map.efforts([hover - d, hover + d])[1]);
+        let slope = (more - less) / (2.0 * NEARBY);
+        let share = ohmic_share(exponent(airframe), hover);
+        // Q goes with w^2, and w with the power 1 / (1 + s) of the throttle.
+        let torque_nm = 0.25 * slope * hover * (1.0 + share);
+        let diameter_m = (full_n / PAIR_OVER_ALONE / LOADING_N_M2).sqrt();
+        let speed_rad_s = 2.0 * TIP_M_S / diameter_m * (hover_n / full_n).sqrt();
+        let mass_kg = MASS_KG_M2 * diameter_m * diameter_m;
+        let estimated = ROD * mass_kg * diameter_m * diameter_m;
+        let inertia = inertia_kg_m2.unwrap_or(estimated);
+        let first_over_steady = (1.0 + share) / (2.0 * share);
+        let lead_s = inertia * speed_rad_s / (2.0 * torque_nm);
+        (lead_s > 0.0).then_some(Flywheel {
+            inertia_kg_m2: inertia,
+            estimated_diameter_m: inertia_kg_m2.is_none().then_some(diameter_m),
+            speed_rad_s,
+            torque_nm,
+            lead_s,
+            first_over_steady,
+        })
+    }
+
+    /// That of the file's `[vehicle]`; `None` without.
+    pub fn of(airframe: &Airframe) -> Option<Flywheel> {
+        let vehicle = airframe.vehicle.as_ref()?;
+        Flywheel::new(airframe, vehicle.mass_kg, vehicle.rotor_inertia_kg_m2)
+    }
+
+    /// The lag tau of a rotor, s.
+    pub fn lag_s(&self) -> f64 {
+        self.lead_s / self.first_over_steady
+    }
+}
+
+/// Half the difference of throttles at which a slope is taken.
+const NEARBY: f64 = 1e-4;
+
+/// Throttle of both rotors of a pair for a thrust, N; `None` where full throttle gives less.
+fn throttle_of(map: &PairMap, thrust_n: f64) -> Option<f64> {
+    let of = |throttle: f64| map.efforts([throttle; 2])[0];
+    let [mut low, mut high] = [0.0, 1.0];
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        *(if of(middle) < thrust_n {
+            &mut low
+        } else {
+            &mut high
+        }) = middle;
+    }
+    (of(1.0) >= thrust_n).then_some(high)
+}
+
+/// Power of the voltage that the airframe's thrust follows, a usual one without `[voltage]`.
+pub fn exponent(airframe: &Airframe) -> f64 {
+    let voltage = airframe.voltage.as_ref();
+    voltage.map_or(TYPICAL_EXPONENT, |voltage| voltage.exponents()[0])
+}
+
+/// Whether an exponent is that of motors; else a controller holds a speed or a current, or it is measured wrong.
+pub fn is_of_motors(exponent: f64) -> bool {
+    (MOTORS[0]..=MOTORS[1]).contains(&exponent)
+}
+
+/// The share s of a motor's voltage that its resistance takes at a throttle; that of a usual one where the exponent is not a motor's.
+pub fn ohmic_share(exponent: f64, throttle: f64) -> f64 {
+    let [least, most] = TAKEN;
+    let taken = if is_of_motors(exponent) {
+        exponent.clamp(least, most)
+    } else {
+        TYPICAL_EXPONENT
+    };
+    let share = 2.0 / taken - 1.0;
+    let c = throttle / EXPONENT_THROTTLE * share / ((1.0 - share) * (1.0 - share));
+    2.0 * c / (2.0 * c + 1.0 + (4.0 * c + 1.0).sqrt())
+}
