@@ -9,17 +9,18 @@ set -eu
 airframe=$(realpath "$1") betaflight=$(realpath "$2") mixer=$3 manoeuvre=$4
 shift 4
 here=$(CDPATH='' cd -- "$(dirname -- "$0")" && pwd)
-cd "$here/../.."
+project=$(realpath "$here/../..")
 own=
 [ "$mixer" = coaxial ] || own=--own
 folder=$(mktemp -d)
 trap 'kill "${process:-}" 2>/dev/null || true; rm -rf "$folder"' EXIT
 
 # Settings of the airframe without their `save`, then those of the simulator.
-cargo mixer params "$airframe" --stack betaflight $own --pwm-range 1000,2000 2>/dev/null | sed '/^save/d' >"$folder/settings.txt"
+(cd "$project" && cargo mixer params "$airframe" --stack betaflight $own --pwm-range 1000,2000) >"$folder/params.txt"
+sed '/^save/d' "$folder/params.txt" >"$folder/settings.txt"
 [ "$mixer" != stock ] || echo 'set thrust_linear = 0' >>"$folder/settings.txt"
 cat "$here/simulator.txt" >>"$folder/settings.txt"
-cargo build --quiet --release -p simulation --bin sitl
+(cd "$project" && cargo build --quiet --release -p simulation --bin sitl)
 (cd "$folder" && "$betaflight" --config settings.txt >log.txt 2>&1) || true
 # Its first start after that may not arm.
 for start in 1 2; do
@@ -28,4 +29,4 @@ for start in 1 2; do
     process=$!
     sleep 1
 done
-target/release/sitl "$airframe" --betaflight --fly "$manoeuvre" "$@"
+"$project/target/release/sitl" "$airframe" --betaflight --fly "$manoeuvre" "$@"
