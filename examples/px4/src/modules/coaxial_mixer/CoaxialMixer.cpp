@@ -54,11 +54,15 @@ void CoaxialMixer::cycle()
 		_parameter_update_sub.copy(&update);
 		updateParams();
 		_is_compared = false;
+
+		if (_mode.flag_armed) {
+			tell_change();
+		}
 	}
 
 	if (!_is_compared && !_mode.flag_armed) {
 		_is_compared = true;
-		compare_parameters();
+		compare_parameters(_mismatch);
 	}
 
 	const bool displaced = is_displaced();
@@ -81,15 +85,15 @@ void CoaxialMixer::cycle()
 
 // Library and parameters must be of one vehicle: those of its frame as `cargo mixer params` writes them, and no
 // correction of what the mixer corrects itself.
-void CoaxialMixer::compare_parameters()
+void CoaxialMixer::compare_parameters(Text &first)
 {
-	_mismatch[0] = '\0';
-	expect("CA_ROTOR_COUNT", _param_rotor_count.get(), ISAE_X8_CHANNELS);
-	expect("THR_MDL_FAC", _param_thrust_curve.get(), 0.f);
+	first[0] = '\0';
+	expect(first, "CA_ROTOR_COUNT", _param_rotor_count.get(), ISAE_X8_CHANNELS);
+	expect(first, "THR_MDL_FAC", _param_thrust_curve.get(), 0.f);
 
 	// 0 V: the airframe has no voltage law, and PX4's may stand.
 	if (ISAE_X8_REFERENCE_V > 0.f) {
-		expect("MC_BAT_SCALE_EN", _param_battery_scale.get(), 0.f);
+		expect(first, "MC_BAT_SCALE_EN", _param_battery_scale.get(), 0.f);
 	}
 
 	static constexpr const char *keys[] {"PX", "PY", "PZ", "AX", "AY", "AZ", "CT", "KM"};
@@ -101,19 +105,30 @@ void CoaxialMixer::compare_parameters()
 			float value = NAN;
 			snprintf(name, sizeof(name), "CA_ROTOR%d_%s", rotor, keys[key]);
 			param_get(param_find(name), &value);
-			expect(name, value, rotors[rotor][key]);
+			expect(first, name, value, rotors[rotor][key]);
 		}
 	}
 }
 
-void CoaxialMixer::expect(const char *name, float value, float of_airframe)
+// PX4 bends the throttles by a THR_MDL_FAC that is set in flight at once. Stopping the motors would be worse.
+void CoaxialMixer::tell_change()
+{
+	Text first;
+	compare_parameters(first);
+
+	if (first[0]) {
+		mavlink_log_critical(&_mavlink_log_pub, "Coaxial mixer: %s, set it back", first);
+	}
+}
+
+void CoaxialMixer::expect(Text &first, const char *name, float value, float of_airframe)
 {
 	// Ground stations show two decimals, which are a fifth of a CA_ROTORn_KM.
 	const bool is_ratio = strstr(name, "_KM") != nullptr;
 	const float tolerance = (is_ratio ? 1e-4f : 0.005f) + 0.01f * std::fabs(of_airframe);
 
-	if (!_mismatch[0] && !(std::fabs(value - of_airframe) <= tolerance)) {
-		snprintf(_mismatch, sizeof(_mismatch), "%s is %.4f, must be %.4f for %s", name, static_cast<double>(value),
+	if (!first[0] && !(std::fabs(value - of_airframe) <= tolerance)) {
+		snprintf(first, sizeof(first), "%s is %.4f, must be %.4f for %s", name, static_cast<double>(value),
 			 static_cast<double>(of_airframe), ISAE_X8_AIRFRAME);
 	}
 }

@@ -59,8 +59,11 @@ public:
 private:
 	void Run() override;
 	void cycle();
-	void compare_parameters();
-	void expect(const char *name, float value, float of_airframe);
+	using Text = char[100];
+
+	void compare_parameters(Text &first);
+	void tell_change();
+	void expect(Text &first, const char *name, float value, float of_airframe);
 	const char *refusal();
 	const char *outside();
 	void answer_arming_check();
@@ -112,9 +115,9 @@ private:
 	mixer_conditions_t _conditions{ISAE_X8_REFERENCE_V, NAN};
 	hrt_abstime _last_battery{0};
 	// The first parameter that is of another vehicle than the library; empty where all are of this one.
-	char _mismatch[100] {};
+	Text _mismatch{};
 	// The voltage and the range that it is outside of.
-	char _outside[100] {};
+	Text _outside{};
 	// Whether the parameters have been compared since the last of them changed: what is changed in flight waits for its end.
 	bool _is_compared{false};
 	bool _told_voltage{false};

@@ -176,14 +176,16 @@ int main()
 	CHECK(published<actuator_motors_s>() == motors && published<control_allocator_status_s>() == 1);
 	publish(vehicle_control_mode_s{0, true, true});
 
-	// A parameter that is changed in flight waits for its end.
-	set("MC_BAT_SCALE_EN", 1.f);
+	// A parameter that is changed in flight is told at once, and refuses arming after it.
+	stand_in::told()[0] = '\0';
+	set("THR_MDL_FAC", 0.3f);
 	cycle(0.f, 0.f, 0.f, 0.3f);
+	CHECK(strstr(stand_in::told(), "THR_MDL_FAC is 0.3000, must be 0.0000 for isae-x8"));
 	CHECK(same(0.f, 0.f, 0.f, 0.3f) && may_arm(3) == 1);
 	publish(vehicle_control_mode_s{0, false, true});
 	cycle(0.f, 0.f, 0.f, 0.3f);
 	CHECK(may_arm(3) == 0);
-	set("MC_BAT_SCALE_EN", 0.f);
+	set("THR_MDL_FAC", 0.f);
 	CHECK(may_arm(3) == 1);
 
 	// A fifth more of a pair's torque over thrust is another pair.
