@@ -30,6 +30,10 @@ void AP_MotorsCoaxialMixer::setup_motors(motor_frame_class frame_class, motor_fr
 
 void AP_MotorsCoaxialMixer::output_armed_stabilizing()
 {
+    // By a clock of its own: ArduPilot's time of a step has other names in other versions.
+    const uint32_t now_us = AP_HAL::micros();
+    _step_s = 1e-6f * (now_us - _last_us);
+    _last_us = now_us;
     update_conditions();
 
     // Stopped motors give nothing, whatever is asked.
@@ -91,7 +95,7 @@ void AP_MotorsCoaxialMixer::update_conditions()
 {
     const float voltage_v = measured_voltage();
     if (voltage_v > 0.0f) {
-        _conditions.voltage_v = _voltage_filter.apply(voltage_v, _dt_s);
+        _conditions.voltage_v = _voltage_filter.apply(voltage_v, _step_s);
         tell_voltage();
     }
     const float density_kg_m3 = measured_density();
@@ -145,7 +149,7 @@ void AP_MotorsCoaxialMixer::refused()
 {
     // The motors hold the last throttles, then they stop.
     limit.roll = limit.pitch = limit.yaw = limit.throttle_lower = limit.throttle_upper = true;
-    _refused_s += _dt_s;
+    _refused_s += _step_s;
     if (_refused_s > PATIENCE_S) {
         stopped();
     }

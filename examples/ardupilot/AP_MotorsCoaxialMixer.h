@@ -60,6 +60,8 @@ private:
     LowPassFilterFloat _voltage_filter {0.5f};
     bool _told_voltage = false;
     float _refused_s = 0.0f;
+    uint32_t _last_us = 0;
+    float _step_s = 0.0f;
 };
 
 #endif // AP_MOTORS_COAXIAL_MIXER_ENABLED

@@ -14,6 +14,8 @@ Told told;
 
 static unsigned faults;
 
+static const uint32_t STEP_US = 2500;
+
 #define CHECK(condition) \
     do { \
         if (!(condition)) { \
@@ -56,6 +58,7 @@ public:
 
     void cycle(SpoolState state, float roll, float pitch, float yaw, float throttle)
     {
+        AP_HAL::now_us() += STEP_US;
         limit = {};
         _spool_state = state;
         // A part of each arrives as the feed-forward.
@@ -90,7 +93,7 @@ public:
     void hover(float volts, float seconds)
     {
         AP::battery().volts = volts;
-        for (int i = 0; i < int(seconds / _dt_s); i++) {
+        for (int i = 0; i < int(1e6f * seconds / STEP_US); i++) {
             cycle(SpoolState::THROTTLE_UNLIMITED, 0.0f, 0.0f, 0.0f, 0.3f);
         }
     }

@@ -29,6 +29,14 @@ extern Told told;
 #define GCS_SEND_TEXT(severity, ...) (void(severity), ++told.times, snprintf(told.text, sizeof(told.text), __VA_ARGS__))
 
 namespace AP_HAL {
+inline uint32_t &now_us()
+{
+    static uint32_t now = 0;
+    return now;
+}
+
+inline uint32_t micros() { return now_us(); }
+
 class Util {
 public:
     int snprintf(char *text, size_t size, const char *format, ...) __attribute__((format(printf, 4, 5)))
@@ -205,7 +213,6 @@ protected:
     void check_for_failed_motor(float throttle) { _checked_throttle = throttle; }
 
     uint16_t _speed_hz;
-    float _dt_s = 0.0025f;
     float _roll_in = 0.0f;
     float _roll_in_ff = 0.0f;
     float _pitch_in = 0.0f;
