@@ -64,6 +64,7 @@ fn compile_airframe(source: &Source, airframe: Airframe) -> Result<Compiled, Vec
     let selected = selection::select(&model.airframe, &model.pair, &model.corrections)?;
     let (tables, lost_between_sides) = model.tables(&selected);
     let thrust_range_n = thrust_range::thrust_range(&model.airframe, &tables)?;
+    thrust_range::check_ends(&model.airframe, &tables, thrust_range_n)?;
     let compiled = Compiled {
         source: source.clone(),
         airframe: model.airframe,

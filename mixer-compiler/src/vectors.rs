@@ -4,7 +4,7 @@
 //! They depend on the airframe and not on the mixer, so that a mixer that changes is asked the same
 //! as before.
 
-use mixer_rt::{Conditions, Wrench};
+use mixer_rt::{Conditions, Health, Wrench};
 
 use crate::Compiled;
 use crate::airframe::{Axis, Correction};
@@ -54,8 +54,8 @@ const BEYOND: usize = 60;
 /// Torques and thrusts next to none, normal and subnormal.
 const FAINT: [f64; 6] = [1e-3, 1e-6, 1e-20, 1e-38, 1e-40, 1e-45];
 
-/// Setpoints for every rotor that is out: every so many of the others.
-const ROTORS_OUT: usize = 12;
+/// Setpoints for every rotor that is out, and for every two.
+const ROTORS_OUT: [usize; 2] = [12, 6];
 
 /// Setpoints with all rotors, kind by kind.
 pub fn by_kind(compiled: &Compiled) -> Vec<(Kind, Vec<Vector>)> {
@@ -77,16 +77,23 @@ pub fn healthy(compiled: &Compiled) -> Vec<Vector> {
     by_kind(compiled).into_iter().flat_map(|(_, list)| list).collect()
 }
 
-/// For every output its rotor out, a choice of the setpoints each: another one for every rotor.
-pub fn rotors_out(compiled: &Compiled, vectors: &[Vector]) -> Vec<(u8, Vector)> {
+/// For every output its rotor out, then with it that of an output half of them further on and one more (with upper and
+/// lower rotors apart the lower one of the next unit), a choice of the setpoints each: another one for every rotor.
+pub fn rotors_out(compiled: &Compiled, vectors: &[Vector]) -> Vec<(Health, Vector)> {
     let rotors = compiled.airframe.rotors();
-    let choice = |channel: usize, k: usize| {
-        let index = (k * rotors + channel) * vectors.len() / (ROTORS_OUT * rotors);
-        Some((u8::try_from(channel).ok()?, *vectors.get(index)?))
-    };
-    (0..rotors)
-        .flat_map(|channel| (0..ROTORS_OUT).filter_map(move |k| choice(channel, k)))
-        .collect()
+    let failed = |channel: usize| u8::try_from(channel % rotors).unwrap_or(u8::MAX);
+    let mut list = Vec::new();
+    for (out, count) in ROTORS_OUT.into_iter().enumerate() {
+        for channel in 0..rotors {
+            let mut health = Health::GOOD.with_failed(failed(channel));
+            if out > 0 {
+                health = health.with_failed(failed(channel + rotors / 2 + 1));
+            }
+            let index = |k: usize| (k * rotors + channel) * vectors.len() / (count * rotors);
+            list.extend((0..count).filter_map(|k| Some((health, *vectors.get(index(k))?))));
+        }
+    }
+    list
 }
 
 fn conditions(volts: f64, density: f64) -> Conditions {

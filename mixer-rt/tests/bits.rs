@@ -4,12 +4,18 @@
 
 mod common;
 
-use common::{Random, tilted, x8};
+use common::{Frame, Random, tilted, x8};
+use mixer_rt::tables::Airmode;
 
 /// Digests with none, one and two rotors out. Where a change of bits is meant, the test prints what
 /// belongs here.
-const X8: [u64; 3] = [0x90821a6853dbf632, 0xfe2fb2725958433e, 0x90eb4b682191fbf4];
-const TILTED: [u64; 3] = [0x9198ab00e5d9dae5, 0x12cecb92f32c14ff, 0x375993fcc14361c9];
+const X8: [u64; 3] = [0x90821a6853dbf632, 0x1ef359a1ef708a19, 0x005bf887619e63dd];
+const TILTED: [u64; 3] = [0x40bcc314bc6e185f, 0x4e44a5318587cf69, 0xc6dc193affa22d32];
+
+/// The same with all rotors: with a reserve, which empties the ranges of the null space near the corners, and with a
+/// power bias.
+const X8_RESERVE: u64 = 0x4be5ae7308aed53f;
+const BIASED: [u64; 2] = [0x506cbb7b4cffff8d, 0x2ff848d7195e27fe];
 
 /// Requests per digest.
 const REQUESTS: usize = 400;
@@ -22,25 +28,43 @@ fn digest(bits: impl Iterator<Item = u32>) -> u64 {
         })
 }
 
+/// Of answers of a frame with `out` rotors out.
+fn of_frame(frame: &Frame, requests: usize, out: usize) -> u64 {
+    let mut random = Random::new(100);
+    let answers = (0..requests).map(|index| {
+        let request = if index % 16 == 0 {
+            frame.draw_wild(&mut random, out)
+        } else {
+            frame.draw(&mut random, out)
+        };
+        frame.mix(&request)
+    });
+    digest(answers.flat_map(|answer| {
+        let values = answer.throttle.into_iter().chain(answer.achieved);
+        values.map(f32::to_bits).collect::<Vec<_>>()
+    }))
+}
+
+#[test]
+fn bits_with_a_reserve_and_with_a_power_bias_are_those_held() {
+    let frame = x8();
+    let kept = frame.with(Airmode::RollPitch, 0.1 * frame.authority()[2]);
+    let reserve = of_frame(&kept, 10 * REQUESTS, 0);
+    let biased = [x8(), tilted()].map(|mut frame| {
+        frame.tables.power_bias_nm_per_n = 0.004;
+        of_frame(&frame, 4 * REQUESTS, 0)
+    });
+    assert!(
+        (reserve, biased) == (X8_RESERVE, BIASED),
+        "other bits; if that is meant:\nconst X8_RESERVE: u64 = 0x{reserve:016x};\nconst BIASED: [u64; 2] = [0x{:016x}, 0x{:016x}];",
+        biased[0],
+        biased[1]
+    );
+}
+
 #[test]
 fn bits_are_those_held() {
-    let digests = [x8(), tilted()].map(|frame| {
-        [0, 1, 2].map(|out| {
-            let mut random = Random::new(100);
-            let answers = (0..REQUESTS).map(|index| {
-                let request = if index % 16 == 0 {
-                    frame.draw_wild(&mut random, out)
-                } else {
-                    frame.draw(&mut random, out)
-                };
-                frame.mix(&request)
-            });
-            digest(answers.flat_map(|answer| {
-                let values = answer.throttle.into_iter().chain(answer.achieved);
-                values.map(f32::to_bits).collect::<Vec<_>>()
-            }))
-        })
-    });
+    let digests = [x8(), tilted()].map(|frame| [0, 1, 2].map(|out| of_frame(&frame, REQUESTS, out)));
     let held = [X8, TILTED];
     let list = |digests: [u64; 3]| digests.map(|digest| format!("0x{digest:016x}")).join(", ");
     assert!(

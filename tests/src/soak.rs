@@ -3,6 +3,7 @@
 
 mod draw;
 mod failure;
+pub mod jumps;
 pub mod limits;
 mod visit;
 

@@ -1,6 +1,6 @@
 //! The range of thrust without torques, by the mixer itself: a frame that cannot hover is refused.
 
-use mixer_rt::Wrench;
+use mixer_rt::{Conditions, Wrench};
 
 use crate::airframe::Airframe;
 use crate::diagnostic::{Code, Diagnostic};
@@ -38,6 +38,55 @@ pub(crate) fn thrust_range(airframe: &Airframe, tables: &MixerTables) -> Result<
             "check positions, spins and thrust axes: the units must balance each other, each with a torque near zero",
         )]
     })
+}
+
+/// Level flight at both ends of the ranges of voltage and density: where thrust and torque follow these by other powers,
+/// a frame that is balanced on the bench may not be there. `level_n` is the range at the reference.
+///
+/// # Errors
+/// No thrust is delivered without torques at an end.
+pub(crate) fn check_ends(
+    airframe: &Airframe,
+    tables: &MixerTables,
+    level_n: [f32; 2],
+) -> Result<(), Vec<Diagnostic>> {
+    let middle_n = 0.5 * (level_n[0] + level_n[1]);
+    for end in [0, 1] {
+        let [volts, density] = [&airframe.voltage, &airframe.air].map(|correction| {
+            correction
+                .as_ref()
+                .map_or(0.0, |correction| correction.range[end])
+        });
+        let conditions = Conditions::at_voltage(volts as f32).in_air(density as f32);
+        let factor = airframe.factors(volts, density)[0] as f32;
+        let is_delivered = |thrust_n: f32| {
+            let setpoint = Wrench {
+                thrust_n: factor * thrust_n,
+                ..Wrench::default()
+            };
+            tables.mix(&setpoint, conditions).is_ok_and(|(_, _, saturation)| {
+                let mut axes = airframe.allocation.axes.iter();
+                axes.all(|axis| !saturation.is_flagged(*axis))
+            })
+        };
+        if is_delivered(middle_n) || longest_run(tables, &is_delivered).is_some() {
+            continue;
+        }
+        let at = [(&airframe.voltage, volts, "V"), (&airframe.air, density, "kg/m3")]
+            .into_iter()
+            .filter(|(correction, ..)| correction.is_some())
+            .map(|(_, value, unit)| format!("{value} {unit}"));
+        let at: Vec<String> = at.collect();
+        return Err(vec![airframe.diagnostic(
+            Code::Hover,
+            if airframe.voltage.is_some() { "voltage.range_v" } else { "air.range_kg_m3" },
+            format!("at {} no thrust is attainable without roll, pitch or yaw", at.join(" and ")),
+            "an end of the ranges",
+            "thrust and torque follow voltage and density by other powers, and the units no longer balance each other there: \
+             narrow the ranges, or check exponents, spins and thrust axes",
+        )]);
+    }
+    Ok(())
 }
 
 /// Least and largest thrust without torques, N at the bench's voltage and density, that least norm

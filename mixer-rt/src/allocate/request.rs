@@ -70,11 +70,13 @@ impl Shortage {
         }
     }
 
+    /// As [`Unknown::eliminate`]: takes the rest from the row, and adds to its diagonal.
     #[inline(always)]
-    fn eliminate(&mut self, lambda: f32, mu: f32, missed: &mut f32, diagonal: &mut f32) {
-        self.unknown.eliminate(lambda * self.width - self.cost, 0.0, mu);
+    fn eliminate(&mut self, lambda: f32, mu: f32, missed: &mut f32, diagonal: &mut f32) -> f32 {
+        let gap = self.unknown.eliminate(lambda * self.width - self.cost, 0.0, mu);
         *missed -= (self.unknown.low + self.unknown.step) * self.width;
         *diagonal += self.unknown.response * self.width * self.width;
+        gap
     }
 
     /// The step with a change of its row's multiplier.
@@ -178,22 +180,23 @@ impl Request {
         })
     }
 
-    /// Eliminates the shortages: takes them from the rows wanted, and adds to the system's diagonal.
+    /// Eliminates the shortages: takes them from the rows wanted, and adds to the system's diagonal. Returns
+    /// the rows, and the sum of the gaps.
     #[inline(always)]
-    pub(super) fn eliminate(&mut self, lambda: &[f32; 4], mu: f32, matrix: &mut Matrix) -> [f32; 4] {
+    pub(super) fn eliminate(&mut self, lambda: &[f32; 4], mu: f32, matrix: &mut Matrix) -> ([f32; 4], f32) {
         let mut missed = self.wanted;
         let [torque, little, much, yaw, kept, more] = &mut self.shortages;
-        torque.eliminate(lambda[0], mu, &mut missed[0], &mut matrix[0]);
-        yaw.eliminate(lambda[2], mu, &mut missed[2], &mut matrix[7]);
-        little.eliminate(lambda[3], mu, &mut missed[3], &mut matrix[9]);
-        much.eliminate(lambda[3], mu, &mut missed[3], &mut matrix[9]);
+        let mut gap = torque.eliminate(lambda[0], mu, &mut missed[0], &mut matrix[0]);
+        gap += yaw.eliminate(lambda[2], mu, &mut missed[2], &mut matrix[7]);
+        gap += little.eliminate(lambda[3], mu, &mut missed[3], &mut matrix[9]);
+        gap += much.eliminate(lambda[3], mu, &mut missed[3], &mut matrix[9]);
         if self.has_reserve {
-            kept.eliminate(lambda[2], mu, &mut missed[2], &mut matrix[7]);
+            gap += kept.eliminate(lambda[2], mu, &mut missed[2], &mut matrix[7]);
         }
         if self.may_exceed {
-            more.eliminate(lambda[2], mu, &mut missed[2], &mut matrix[7]);
+            gap += more.eliminate(lambda[2], mu, &mut missed[2], &mut matrix[7]);
         }
-        missed
+        (missed, gap)
     }
 
     /// Steps with a change of the multipliers; raises `most` to the largest step over its room.

@@ -89,12 +89,12 @@ pub struct Answer {
 #[derive(Clone)]
 pub struct Frame {
     pub name: &'static str,
-    /// Tables but for the pair, the inverse and the closed form. Priorities may be changed.
+    /// Tables but for the pair, the inverse and the closed form. Priorities and the power bias may be changed.
     pub tables: Tables<'static, (), (), ()>,
     /// Coefficients of thrust and torque of a pair, and the products of throttles that they are of.
     pair: [Vec<f32>; 2],
     terms: &'static str,
-    mix: fn(Priorities, &Request) -> Result<Answer, SetpointError>,
+    mix: fn(Priorities, f32, &Request) -> Result<Answer, SetpointError>,
     /// Throttles for efforts, and the efforts that they give.
     invert: fn([f32; 2]) -> [[f32; 2]; 2],
 }
@@ -136,11 +136,13 @@ macro_rules! frame {
             tables: common(&TABLES),
             pair: [TABLES.pair.thrust, TABLES.pair.torque].map(|quantity| quantity.0.to_vec()),
             terms: $terms,
-            mix: |priorities, request| {
-                let (tables, wrench) = (
-                    Tables { priorities, ..TABLES },
-                    Wrench::from_array(request.wrench),
-                );
+            mix: |priorities, power_bias_nm_per_n, request| {
+                let tables = Tables {
+                    priorities,
+                    power_bias_nm_per_n,
+                    ..TABLES
+                };
+                let wrench = Wrench::from_array(request.wrench);
                 let (conditions, health) = (request.conditions(), request.health);
                 let mix = mix::<UNITS, CHANNELS, _, _, _>(&tables, &wrench, conditions, health)?;
                 Ok(Answer {
@@ -176,7 +178,7 @@ impl Frame {
     }
 
     pub fn try_mix(&self, request: &Request) -> Result<Answer, SetpointError> {
-        (self.mix)(self.tables.priorities, request)
+        (self.mix)(self.tables.priorities, self.tables.power_bias_nm_per_n, request)
     }
 
     pub fn mix(&self, request: &Request) -> Answer {

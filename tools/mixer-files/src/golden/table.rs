@@ -17,13 +17,15 @@ pub(super) fn healthy(compiled: &Compiled, vectors: &[Vector]) -> String {
     table
 }
 
-/// A row per vector; `failed` is the output of the rotor that is out.
-pub(super) fn rotors_out(compiled: &Compiled, vectors: &[(u8, Vector)]) -> String {
+/// A row per vector; `failed` has the outputs of the rotors that are out, `+` between them.
+pub(super) fn rotors_out(compiled: &Compiled, vectors: &[(Health, Vector)]) -> String {
     let mut table = format!("failed,{}", header(compiled));
-    for (failed, vector) in vectors {
-        let _ = write!(table, "{failed},");
-        let health = Health::GOOD.with_failed(*failed);
-        push_row(&mut table, compiled, vector, health);
+    let rotors = compiled.airframe.rotors() as u8;
+    for (health, vector) in vectors {
+        let failed = (0..rotors).filter(|channel| health.has_failed(*channel));
+        let failed: Vec<String> = failed.map(|channel| channel.to_string()).collect();
+        let _ = write!(table, "{},", failed.join("+"));
+        push_row(&mut table, compiled, vector, *health);
     }
     table
 }

@@ -4,7 +4,6 @@ use std::fmt;
 
 use mixer_compiler::Compiled;
 use mixer_compiler::airframe::Airframe;
-use mixer_compiler::diagnostic::rounded;
 
 /// A parameter of a flight stack.
 #[derive(Clone, Debug)]

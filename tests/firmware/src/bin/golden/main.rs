@@ -16,7 +16,7 @@ use core::mem::MaybeUninit;
 use cortex_m_rt::entry;
 use cortex_m_semihosting::hprintln;
 use harness::{agrees, differing_with_rotors_out, request, rows};
-use mixer_rt::{Conditions, Health, Mix, SetpointError, Wrench};
+use mixer_rt::{Conditions, Mix, SetpointError, Wrench};
 use probe::{Counter, Mixer};
 
 #[path = "../vectors/harness.rs"]
@@ -45,8 +45,8 @@ macro_rules! check {
         }
         let mut different = 0;
         let raised = probe::exceptions(|| {
-            different = differing_with_rotors_out($rotors_out, |setpoint, conditions, failed| {
-                $module::mix_with_health(setpoint, conditions, Health::GOOD.with_failed(failed))
+            different = differing_with_rotors_out($rotors_out, |setpoint, conditions, health| {
+                $module::mix_with_health(setpoint, conditions, health)
             });
         });
         $check.rotors_out($name, different);
@@ -66,7 +66,7 @@ struct Check {
 }
 
 impl Check {
-    /// Notes how many rows with a rotor out differ.
+    /// Notes how many rows with rotors out differ.
     fn rotors_out(&mut self, name: &str, differing: usize) {
         if differing > 0 {
             hprintln!("{}.rotors-out.csv: {} rows differ", name, differing);

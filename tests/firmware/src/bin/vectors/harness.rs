@@ -1,7 +1,7 @@
 //! Golden vectors on the target: rows of the tables that `cargo mixer golden` writes. Copy this
 //! file.
 
-use mixer_rt::{Conditions, Mix, SetpointError, Wrench};
+use mixer_rt::{Conditions, Health, Mix, SetpointError, Wrench};
 
 /// What a mixer returns.
 type Mixed<const CHANNELS: usize> = Result<Mix<CHANNELS>, SetpointError>;
@@ -19,16 +19,20 @@ pub(crate) fn differing<const CHANNELS: usize>(
     rows(table).filter(|row| agrees(row) != Some(true)).count()
 }
 
-/// How many rows of `NAME.rotors-out.csv` `mix` gives other bits for with the rotor out that it is
+/// How many rows of `NAME.rotors-out.csv` `mix` gives other bits for with the rotors out that it is
 /// given.
 pub(crate) fn differing_with_rotors_out<const CHANNELS: usize>(
     table: &str,
-    mix: impl Fn(&Wrench, Conditions, u8) -> Mixed<CHANNELS>,
+    mix: impl Fn(&Wrench, Conditions, Health) -> Mixed<CHANNELS>,
 ) -> usize {
     let agrees = |row: &&str| {
         let (failed, row) = row.split_once(',')?;
         let (setpoint, conditions) = request(row, CHANNELS)?;
-        Some(agrees(row, &mix(&setpoint, conditions, failed.parse().ok()?)))
+        let mut health = Health::GOOD;
+        for channel in failed.split('+') {
+            health = health.with_failed(channel.parse().ok()?);
+        }
+        Some(agrees(row, &mix(&setpoint, conditions, health)))
     };
     rows(table).filter(|row| agrees(row) != Some(true)).count()
 }

@@ -18,13 +18,13 @@ mixer_macros::airframe!("../../airframes/isae-x8.toml");
 /// All rotors turn.
 static VECTORS: &str = include_str!("../../../../golden/isae-x8.vectors.csv");
 
-/// One rotor is out.
+/// One rotor is out, or two are.
 static ROTORS_OUT: &str = include_str!("../../../../golden/isae-x8.rotors-out.csv");
 
 #[entry]
 fn main() -> ! {
-    let with_rotor_out = |setpoint: &Wrench, conditions: Conditions, failed| {
-        isae_x8::mix_with_health(setpoint, conditions, Health::GOOD.with_failed(failed))
+    let with_rotor_out = |setpoint: &Wrench, conditions: Conditions, health: Health| {
+        isae_x8::mix_with_health(setpoint, conditions, health)
     };
     let differ = differing(VECTORS, isae_x8::mix) + differing_with_rotors_out(ROTORS_OUT, with_rotor_out);
     let count = rows(VECTORS).count() + rows(ROTORS_OUT).count();
