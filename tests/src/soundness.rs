@@ -212,7 +212,9 @@ fn overstepping(frame: &Frame, request: &Request, answer: &Answer) -> Result<Vec
         return Ok(Vec::new());
     };
     let exact = || Oracle::exact(&frame.physics, frame.allocation(), factors, request.health);
-    if !is_whole && !(oracle.has_level(asked[2], asked[3])? && exact().has_level(asked[2], asked[3])?) {
+    let is_judged =
+        is_whole || oracle.has_level(asked[2], asked[3])? && exact().has_level(asked[2], asked[3])?;
+    if !is_judged {
         return Ok(Vec::new());
     }
     let given = answer.achieved[3];
