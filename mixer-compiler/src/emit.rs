@@ -50,7 +50,8 @@ pub(crate) fn module(compiled: &Compiled) -> TokenStream {
             pub const ARDUPILOT_SCALE: rt::Wrench = #ardupilot_scale;
             /// Torques of PID sums of 1000 in Betaflight, and the thrust of its full throttle stick.
             pub const BETAFLIGHT_SCALE: rt::Wrench = #betaflight_scale;
-            /// e of Betaflight's throttle stick: (1 - e) throttle + e throttle^2 of that thrust.
+            /// e of Betaflight's throttle stick: (1 - e) throttle + e throttle^2 of that thrust, above 1
+            /// (2 - e) throttle^2 + (e - 1) throttle^3.
             pub const BETAFLIGHT_EXPO: f32 = #betaflight_expo;
 
             #mixer

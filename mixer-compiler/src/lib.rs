@@ -197,9 +197,9 @@ impl Compiled {
         }
     }
 
-    /// e of the throttle stick in Betaflight: the thrust is (1 - e) throttle + e throttle^2 of that of the full stick, and
-    /// the stick in hover that of Betaflight's own mixer at the reference voltage, as far as an e from 0 to 1 has it. 1
-    /// without `[vehicle] mass_kg`.
+    /// e of the throttle stick in Betaflight, from 0 to 2: up to 1 the thrust is (1 - e) throttle + e throttle^2 of that of the
+    /// full stick, above it (2 - e) throttle^2 + (e - 1) throttle^3, and the stick in hover that of Betaflight's own mixer at the
+    /// reference voltage. 1 without `[vehicle] mass_kg`.
     pub fn betaflight_expo(&self) -> f64 {
         let full_n = self.betaflight_scale().thrust_n.into();
         self.rotors(self.airframe.reference_v()).betaflight_expo(full_n)

@@ -36,15 +36,17 @@
 //! B times factor. Hence a stack's gains keep their meaning on this frame.
 //!
 //! Betaflight (`mixTable`) adds to each motor's output its factors of `mmix` times the PID sums over 1000, as shares of the
-//! range from idle to full throttle, and makes no thrust linear. Its tables (`mixerOctoX8`, `mixerY6`) have factors in
+//! range from idle to the largest throttle (`motor_output_limit`), and makes no thrust linear. Its tables (`mixerOctoX8`, `mixerY6`) have factors in
 //! proportion to the entries of B, whose largest less least is 2; a PID sum of 1000 asks for the sum of B times factor,
-//! times the slope of thrust over output in hover. Its throttle stick has no unit of thrust: here it has ArduPilot's curve,
+//! times the slope of thrust over output in hover. Its throttle stick has no unit of thrust: here it has the curve
 //!
 //! ```text
-//! thrust / largest thrust = (1 - e) throttle + e throttle^2
+//! thrust / largest thrust = (1 - e) throttle + e throttle^2               e from 0 to 1, as ArduPilot's
+//!                           (2 - e) throttle^2 + (e - 1) throttle^3       e from 1 to 2
 //! ```
 //!
-//! with the e for which the stick in hover is that of Betaflight's own mixer.
+//! with the e for which the stick in hover is that of Betaflight's own mixer. It rises all the way. The largest thrust is that at the
+//! highest voltage, so heavy vehicles have an e above 1.
 
 use mixer_rt::Wrench;
 use nalgebra::DMatrix;
@@ -159,9 +161,9 @@ impl Rotors<'_> {
     pub(crate) fn betaflight(&self) -> Wrench {
         let columns = self.columns();
         let axes = &self.airframe.allocation.axes;
-        let min = self.pair.range()[0];
-        // Over Betaflight's output, which begins at idle; 1 without a hover.
-        let slope = self.slope_in_hover().map_or(1.0, |slope| (1.0 - min) * slope);
+        let [min, max] = self.pair.range();
+        // Over Betaflight's output, from idle to the largest throttle; 1 without a hover.
+        let slope = self.slope_in_hover().map_or(1.0, |slope| (max - min) * slope);
         Wrench::from_array(Axis::ALL.map(|axis| {
             let row = axes.iter().position(|served| *served == axis);
             row.filter(|_| axis != Axis::Thrust).map_or(0.0, |row| {
@@ -172,15 +174,21 @@ impl Rotors<'_> {
         }))
     }
 
-    /// e of the throttle stick's curve, from 0 to 1; 1 without a hover. The full stick has `full_n`.
+    /// e of the throttle stick's curve, from 0 to 2; 1 without a hover. The full stick has `full_n`.
     pub(crate) fn betaflight_expo(&self, full_n: f64) -> f64 {
-        let min = self.pair.range()[0];
+        let [min, max] = self.pair.range();
         let hover = self.hover_throttle().zip(self.airframe.weight_n());
         let expo = hover.map_or(1.0, |(h, weight_n)| {
-            let stick = (h - min) / (1.0 - min);
-            (stick - weight_n / full_n) / (stick - stick * stick)
+            let (stick, share) = ((h - min) / (max - min), weight_n / full_n);
+            // By the square of the stick alone the share would be this.
+            let square = stick * stick;
+            if share > square {
+                (stick - share) / (stick - square)
+            } else {
+                1.0 + (square - share) / (square - square * stick)
+            }
         });
-        expo.clamp(0.0, 1.0)
+        expo.clamp(0.0, 2.0)
     }
 
     /// Betaflight's factors of roll, pitch and yaw, by channel, in its signs; zero on axes that are not served.
@@ -363,7 +371,7 @@ mod tests {
         // Betaflight's pitch is positive nose down.
         for (axis, sign) in [(0, 1.0), (1, -1.0), (2, 1.0)] {
             let small = 1e-4;
-            let moved = |sum: f64| wrench(&|motor| hover + (1.0 - min) * sum * factors[motor][axis])[axis];
+            let moved = |sum: f64| wrench(&|motor| hover + (max - min) * sum * factors[motor][axis])[axis];
             let slope = sign * (moved(small) - moved(-small)) / (2.0 * small);
             assert_near(scale[axis], slope);
             let range = factors
@@ -372,16 +380,37 @@ mod tests {
                 .fold(0.0, f64::max);
             assert!((range - 1.0).abs() < 1e-9, "{factors:?}");
         }
-        let stick = (hover - min) / (1.0 - min);
-        let expo = compiled.betaflight_expo();
-        let thrust_n = ((1.0 - expo) * stick + expo * stick * stick) * f64::from(scale[3]);
-        assert!(
-            expo < 1.0 && (thrust_n / (3.2 * 9.80665) - 1.0).abs() < 1e-6,
-            "{expo} {thrust_n}"
-        );
         let [_, _, _, full_n] = wrench(&|_| max);
         let highest = compiled.airframe.voltage_factors(compiled.highest_v())[0];
         assert_near(scale[3], highest * full_n);
+    }
+
+    #[test]
+    fn hover_is_at_the_stick_of_betaflights_own_mixer() {
+        for name in ["isae-x8", "x8-11in-cubic", "x8-16in-quartic", "px4-y6"] {
+            let path = format!("{}/airframes/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+            let text = std::fs::read_to_string(path).unwrap();
+            let bare = compile(&Source::new("x8", text.clone())).unwrap();
+            let full_kg = f64::from(bare.thrust_range_n[1]) / 9.80665;
+            for over_weight in [1.4, 2.0, 3.0, 4.0, 6.0] {
+                let text = format!("{text}\n[vehicle]\nmass_kg = {}\n", full_kg / over_weight);
+                let compiled = compile(&Source::new("x8", text)).unwrap();
+                let [min, max] = compiled.pair.range();
+                let stick = (compiled.equal_hover_throttle().unwrap() - min) / (max - min);
+                let e = compiled.betaflight_expo();
+                let share = if e <= 1.0 {
+                    (1.0 - e) * stick + e * stick.powi(2)
+                } else {
+                    (2.0 - e) * stick.powi(2) + (e - 1.0) * stick.powi(3)
+                };
+                let thrust_n = share * f64::from(compiled.betaflight_scale().thrust_n);
+                let carried = thrust_n / compiled.airframe.weight_n().unwrap();
+                assert!(
+                    (carried - 1.0).abs() < 1e-6,
+                    "{name} {over_weight}: e {e}, {carried}"
+                );
+            }
+        }
     }
 
     #[test]

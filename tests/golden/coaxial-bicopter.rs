@@ -44,7 +44,8 @@ pub mod coaxial_bicopter {
         yaw_nm: 0.866016,
         thrust_n: 61.887005,
     };
-    /// e of Betaflight's throttle stick: (1 - e) throttle + e throttle^2 of that thrust.
+    /// e of Betaflight's throttle stick: (1 - e) throttle + e throttle^2 of that thrust, above 1
+    /// (2 - e) throttle^2 + (e - 1) throttle^3.
     pub const BETAFLIGHT_EXPO: f32 = 1.0;
     /// The mixer of `coaxial-bicopter` as a type, for code that is generic over airframes.
     #[derive(Clone, Copy, Debug, Default)]

@@ -46,7 +46,8 @@ pub mod isae_x8 {
         yaw_nm: 1.732032,
         thrust_n: 123.77401,
     };
-    /// e of Betaflight's throttle stick: (1 - e) throttle + e throttle^2 of that thrust.
+    /// e of Betaflight's throttle stick: (1 - e) throttle + e throttle^2 of that thrust, above 1
+    /// (2 - e) throttle^2 + (e - 1) throttle^3.
     pub const BETAFLIGHT_EXPO: f32 = 1.0;
     /// The mixer of `isae-x8` as a type, for code that is generic over airframes.
     #[derive(Clone, Copy, Debug, Default)]

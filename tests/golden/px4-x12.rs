@@ -48,7 +48,8 @@ pub mod px4_x12 {
         yaw_nm: 2.598048,
         thrust_n: 185.66101,
     };
-    /// e of Betaflight's throttle stick: (1 - e) throttle + e throttle^2 of that thrust.
+    /// e of Betaflight's throttle stick: (1 - e) throttle + e throttle^2 of that thrust, above 1
+    /// (2 - e) throttle^2 + (e - 1) throttle^3.
     pub const BETAFLIGHT_EXPO: f32 = 1.0;
     /// The mixer of `px4-x12` as a type, for code that is generic over airframes.
     #[derive(Clone, Copy, Debug, Default)]

@@ -45,7 +45,8 @@ pub mod px4_y6 {
         yaw_nm: 1.299024,
         thrust_n: 92.830505,
     };
-    /// e of Betaflight's throttle stick: (1 - e) throttle + e throttle^2 of that thrust.
+    /// e of Betaflight's throttle stick: (1 - e) throttle + e throttle^2 of that thrust, above 1
+    /// (2 - e) throttle^2 + (e - 1) throttle^3.
     pub const BETAFLIGHT_EXPO: f32 = 1.0;
     /// The mixer of `px4-y6` as a type, for code that is generic over airframes.
     #[derive(Clone, Copy, Debug, Default)]

@@ -43,7 +43,8 @@ pub mod single_pair {
         yaw_nm: 0.433008,
         thrust_n: 24.7877,
     };
-    /// e of Betaflight's throttle stick: (1 - e) throttle + e throttle^2 of that thrust.
+    /// e of Betaflight's throttle stick: (1 - e) throttle + e throttle^2 of that thrust, above 1
+    /// (2 - e) throttle^2 + (e - 1) throttle^3.
     pub const BETAFLIGHT_EXPO: f32 = 1.0;
     /// The mixer of `single-pair` as a type, for code that is generic over airframes.
     #[derive(Clone, Copy, Debug, Default)]

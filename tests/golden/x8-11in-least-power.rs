@@ -46,7 +46,8 @@ pub mod x8_11in_least_power {
         yaw_nm: 2.079688,
         thrust_n: 107.32853,
     };
-    /// e of Betaflight's throttle stick: (1 - e) throttle + e throttle^2 of that thrust.
+    /// e of Betaflight's throttle stick: (1 - e) throttle + e throttle^2 of that thrust, above 1
+    /// (2 - e) throttle^2 + (e - 1) throttle^3.
     pub const BETAFLIGHT_EXPO: f32 = 1.0;
     /// The mixer of `x8-11in-least-power` as a type, for code that is generic over airframes.
     #[derive(Clone, Copy, Debug, Default)]

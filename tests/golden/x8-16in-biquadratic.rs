@@ -46,7 +46,8 @@ pub mod x8_16in_biquadratic {
         yaw_nm: 4.220063,
         thrust_n: 168.08395,
     };
-    /// e of Betaflight's throttle stick: (1 - e) throttle + e throttle^2 of that thrust.
+    /// e of Betaflight's throttle stick: (1 - e) throttle + e throttle^2 of that thrust, above 1
+    /// (2 - e) throttle^2 + (e - 1) throttle^3.
     pub const BETAFLIGHT_EXPO: f32 = 1.0;
     /// The mixer of `x8-16in-biquadratic` as a type, for code that is generic over airframes.
     #[derive(Clone, Copy, Debug, Default)]

@@ -48,7 +48,8 @@ pub mod tilted {
         yaw_nm: 6.306025,
         thrust_n: 135.78683,
     };
-    /// e of Betaflight's throttle stick: (1 - e) throttle + e throttle^2 of that thrust.
+    /// e of Betaflight's throttle stick: (1 - e) throttle + e throttle^2 of that thrust, above 1
+    /// (2 - e) throttle^2 + (e - 1) throttle^3.
     pub const BETAFLIGHT_EXPO: f32 = 1.0;
     /// The mixer of `tilted` as a type, for code that is generic over airframes.
     #[derive(Clone, Copy, Debug, Default)]

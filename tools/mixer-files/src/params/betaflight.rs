@@ -2,6 +2,7 @@
 
 use mixer_compiler::Compiled;
 use mixer_compiler::airframe::Airmode;
+use mixer_facts::hover;
 
 use crate::import::betaflight::TABLES;
 use crate::params::parameter::{Parameters, curve};
@@ -50,7 +51,11 @@ pub(crate) fn settings(compiled: &Compiled, all: &mut Parameters) {
         .whole("thrust_linear", 0);
     all.because("The mixer follows the battery's voltage.")
         .whole("vbat_sag_compensation", 0);
-    idle(compiled, all);
+    idle(
+        compiled,
+        all,
+        "Idle of crash flip and launch control, in 0.01 %; in flight it is throttle.min of the file.",
+    );
     all.because("The largest throttle is the mixer's, throttle.max.")
         .whole("motor_output_limit", 100);
     all.because("A rotor of a pair that is held at a speed of its own is none of the map's.")
@@ -63,11 +68,18 @@ pub(crate) fn settings(compiled: &Compiled, all: &mut Parameters) {
              `airmode = \"roll-pitch\"` in the airframe file",
         ),
         _ => {
-            all.because("The airframe's airmode raises the thrust for roll and pitch; without the feature their PID sums are halved at throttle 0.")
+            all.because("The airframe's airmode raises the thrust for roll, pitch and the yaw reserve; without the feature their PID sums are halved at throttle 0.")
                 .line("feature AIRMODE");
         }
     }
-    hover(compiled, 1.0, all);
+    let missing = hover::yaw_reserve(compiled).filter(|_| compiled.airframe.allocation.yaw_reserve_nm <= 0.0);
+    if let Some(reserve) = missing {
+        all.note(format!(
+            "yaw_reserve_nm is 0, so there is no yaw at throttle 0; pilots of Betaflight's AIRMODE count on it: \
+             `yaw_reserve_nm = {reserve:.2}` in the airframe file is a fifth of hover's"
+        ));
+    }
+    hover_throttle(compiled, all);
     all.note(
         "PID gains of Betaflight's own mixer stay: a PID sum asks for the torque that its factors give in hover at the reference \
          voltage (`[vehicle] mass_kg` says where that is). Settings of profiles are those of the active one",
@@ -79,13 +91,19 @@ pub(crate) fn own(compiled: &Compiled, all: &mut Parameters) {
     let curve = (100.0 * curve(compiled, true)).round() as i32;
     all.because("Fitted to the thrust of the pair with both rotors alike, in percent as MOT_THST_EXPO.")
         .whole("thrust_linear", curve);
-    idle(compiled, all);
+    if compiled.airframe.throttle.min > MOST_IDLE {
+        all.note(format!(
+            "throttle.min is {:?}, and Betaflight's motor_idle {MOST_IDLE} at most: its own mixer idles below the pair's map",
+            compiled.airframe.throttle.min
+        ));
+    }
+    idle(compiled, all, "Idle of the airframe, throttle.min, in 0.01 %.");
     let [min, max] = compiled.pair.range();
     all.because("The largest throttle is throttle.max.").whole(
         "motor_output_limit",
         (100.0 * (max - min) / (1.0 - min)).round() as i32,
     );
-    hover(compiled, max, all);
+    hover_throttle(compiled, all);
 }
 
 /// Pulse widths of throttle 0 and 1, microseconds; DShot has none.
@@ -95,24 +113,16 @@ pub(crate) fn pulses([low, high]: [f64; 2], all: &mut Parameters) {
         .whole("max_throttle", high as i32);
 }
 
-fn idle(compiled: &Compiled, all: &mut Parameters) {
-    let throttle = &compiled.airframe.throttle;
-    if throttle.min > MOST_IDLE {
-        all.note(format!(
-            "throttle.min is {:?}: Betaflight's motor_idle is {MOST_IDLE} at most, and the mixer does not arm with another than the airframe's",
-            throttle.min
-        ));
-    }
-    let idle = (1e4 * throttle.min.min(MOST_IDLE)).round() as i32;
-    all.because("Idle of the airframe, throttle.min, in 0.01 %.")
-        .whole("motor_idle", idle);
+fn idle(compiled: &Compiled, all: &mut Parameters, why: &str) {
+    let idle = (1e4 * compiled.airframe.throttle.min.min(MOST_IDLE)).round() as i32;
+    all.because(why).whole("motor_idle", idle);
 }
 
-/// Betaflight's hover for altitude hold and rescue; its throttle 1 is a rotor's throttle `full`.
-fn hover(compiled: &Compiled, full: f64, all: &mut Parameters) {
-    let min = compiled.airframe.throttle.min;
+/// Betaflight's hover for altitude hold and rescue; its throttle 1 is throttle.max of all rotors.
+fn hover_throttle(compiled: &Compiled, all: &mut Parameters) {
+    let [min, max] = compiled.pair.range();
     let hover = compiled.equal_hover_throttle();
-    let hover = hover.map(|throttle| (1000.0 + 1000.0 * (throttle - min) / (full - min)).round());
+    let hover = hover.map(|throttle| (1000.0 + 1000.0 * (throttle - min) / (max - min)).round());
     let why = "The throttle of hover at the reference voltage.";
     all.hover("ap_hover_throttle", hover, why);
 }

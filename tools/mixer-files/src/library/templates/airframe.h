@@ -38,7 +38,8 @@
 }
 
 /* Torques of PID sums of 1000 in Betaflight's hover@REFERENCE@, and the thrust of its full throttle stick@FULL@.
- * Less stick has (1 - THRUST_EXPO) stick + THRUST_EXPO stick^2 of it, which in hover is the stick of Betaflight's own mixer. */
+ * With e = THRUST_EXPO, less stick has (1 - e) stick + e stick^2 of it, above e = 1 (2 - e) stick^2 + (e - 1) stick^3: hover is
+ * at the stick of Betaflight's own mixer. */
 @BETAFLIGHT@#define @PREFIX@_BETAFLIGHT_THRUST_EXPO @EXPO@
 
 /* Betaflight's factors of roll, pitch and yaw by channel, in its signs: the `mmix` of this frame. */
