@@ -31,7 +31,7 @@ const CONSTANT_S: f64 = 3.0;
 const PLACE: f64 = 1.0;
 const SPEED: f64 = 1.6;
 const INTEGRAL: f64 = 0.4;
-const ATTITUDE: [f64; 3] = [6.0, 6.0, 2.0];
+const ATTITUDE: [f64; 3] = [3.0, 3.0, 2.0];
 
 /// Largest acceleration sideways, over gravity, and upward speed, m/s.
 const TILT: f64 = 0.35;
