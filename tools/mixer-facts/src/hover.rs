@@ -44,14 +44,9 @@ impl Hover {
 /// Share of the yaw in hover that [`yaw_reserve`] keeps.
 const KEPT_YAW: f64 = 0.2;
 
-/// A yaw reserve to begin with, N m: a fifth of the [`yaw`] of hover. `None` where there is none.
+/// A yaw reserve to begin with, N m: a fifth of the yaw that is left in hover either way, at the
+/// reference voltage. Hover is the weight, without a mass half of the largest bare thrust. `None` where nothing is left or yaw is not served.
 pub fn yaw_reserve(compiled: &Compiled) -> Option<f64> {
-    yaw(compiled).map(|yaw| KEPT_YAW * yaw)
-}
-
-/// Yaw that is left in hover either way, N m, at the reference voltage. Hover is the weight, without a mass half of the largest
-/// bare thrust. `None` where nothing is left or yaw is not served.
-pub fn yaw(compiled: &Compiled) -> Option<f64> {
     let airframe = &compiled.airframe;
     let half_n = 0.5 * f64::from(compiled.thrust_range_n[1]);
     let weight_n = airframe.weight_n().unwrap_or(half_n);
@@ -60,5 +55,6 @@ pub fn yaw(compiled: &Compiled) -> Option<f64> {
     let mut margins = hover.margins.iter();
     let yaw = margins.find(|margin| margin.axis == Axis::Yaw.name())?;
     let [least, most] = yaw.torque_nm;
-    Some(most.min(-least)).filter(|left| *left > 0.0)
+    let reserve = KEPT_YAW * most.min(-least);
+    (reserve > 0.0).then_some(reserve)
 }

@@ -159,3 +159,39 @@ fn betaflights_motors_are_what_the_library_mixes() {
 fn the_ardupilot_motors_write_what_the_library_mixes() {
     ARDUPILOT.drive();
 }
+
+/// `examples/contracts/check.py` on a page and a tree of a stack, made up.
+#[test]
+fn contracts_are_asked_of_a_tree() {
+    let folder = Folder::new("contracts");
+    let page = folder.join("page.md");
+    let rows = "| counted on | file | shown by | read at |\n|---|---|---|---|\n\
+                | order | `a.c` | `first();` `second( );` | 1 |\n\
+                | either | `gone.c`, `a.c` | `third();` or `second();` | 1 |\n\
+                | absent | `a.c` | no `third();` `first();` | 1 |\n";
+    fs::write(&page, format!("# Page\n\n{rows}\nEnd.\n")).unwrap();
+    let check = |source: &str| {
+        fs::write(folder.join("a.c"), source).unwrap();
+        let script = root().join("examples/contracts/check.py");
+        let output = Command::new("python3")
+            .arg(script)
+            .arg(&page)
+            .arg(folder.join(""))
+            .output()
+            .unwrap();
+        (output.status.code(), String::from_utf8(output.stdout).unwrap())
+    };
+    let (status, text) = check("first();\n\tsecond();\n");
+    assert!(
+        status == Some(0) && text.contains("3 contracts, 0 not found"),
+        "{text}"
+    );
+    let (status, text) = check("second(); first(); third();");
+    assert!(
+        status == Some(1)
+            && text.contains("NOT FOUND     a.c: order")
+            && text.contains("holds, way 1  gone.c or a.c: either")
+            && text.contains("NOT FOUND     a.c: absent"),
+        "{text}"
+    );
+}
