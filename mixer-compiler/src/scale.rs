@@ -398,10 +398,11 @@ mod tests {
                 let [min, max] = compiled.pair.range();
                 let stick = (compiled.equal_hover_throttle().unwrap() - min) / (max - min);
                 let e = compiled.betaflight_expo();
+                let square = stick * stick;
                 let share = if e <= 1.0 {
-                    (1.0 - e) * stick + e * stick.powi(2)
+                    (1.0 - e) * stick + e * square
                 } else {
-                    (2.0 - e) * stick.powi(2) + (e - 1.0) * stick.powi(3)
+                    ((2.0 - e) + (e - 1.0) * stick) * square
                 };
                 let thrust_n = share * f64::from(compiled.betaflight_scale().thrust_n);
                 let carried = thrust_n / compiled.airframe.weight_n().unwrap();
