@@ -11,7 +11,7 @@
 //!
 //! The plant *is* the coaxial map that the coaxial mixer inverts. Given that map, the simulation
 //! shows how far each mixer's command is from the thrust that flies (Fig. 10), how the conventional
-//! mixer's errors couple yaw into the altitude, and how both loops respond with rotors that lag,
+//! mixer's errors couple yaw into the altitude, and how both loops respond with rotors that are flywheels,
 //! differ by 1 % and run on a sagging battery.
 //!
 //! It cannot show that the map is right: in flight the model's own error adds to the coaxial

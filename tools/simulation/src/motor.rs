@@ -15,9 +15,8 @@
 //! t dw/dt = d x - D(w),   D(w) = (1 - s) w + s ((1 - i0) sigma w^2 + i0),   t = s (1 - i0) J W / Qf
 //! ```
 //!
-//! A rotor in steady state at the reference turns so that D(w) = d. About there the speed follows with
-//! the lag tau = t / D'(w), and the torque that the current gives is at first r times as far from the old one as it
-//! is in the end, less what the rotor takes up:
+//! A rotor in steady state at the reference turns so that D(w) = d. About there the speed follows a small step with the
+//! lag tau = t / D'(w). The motor's torque, whose reaction is on the frame, begins with r times the change that it ends with:
 //!
 //! ```text
 //! r = 1 + (1 - s) / (2 s (1 - i0) sigma w) = (1 + s_w) / (2 s_w),   T = r tau = J w / (2 Q)

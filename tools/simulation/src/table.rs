@@ -18,7 +18,7 @@ pub struct Comparison {
 
 /// What stands under the tables.
 pub const NOTES: &str = "\
-What this shows: both mixers on one plant, the identified coaxial map with rotor lag, 1 % rotor mismatch and a
+What this shows: both mixers on one plant, the identified coaxial map, rotors as flywheels, 1 % rotor mismatch and a
 sagging battery, under the same controller with the same gains, placed on a mixer that delivers what is asked.
 What it does not: the plant is the map that the coaxial mixer inverts, so that mixer's model error is left out (the
 paper's flight shows some 2 N of it); ground effect, drag, sensor noise and the paper's own gains, yaw angles and

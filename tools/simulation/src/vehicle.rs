@@ -29,8 +29,7 @@ pub const GRAVITY_M_S2: f64 = 9.80665;
 /// Weight, N: the thrust that hover takes.
 pub const WEIGHT_N: f64 = MASS_KG * GRAVITY_M_S2;
 
-/// Time constant of a rotor's first-order lag, s. The paper gives none; 0.05 s is usual for 10 inch
-/// propellers.
+/// Lag of a rotor in hover, s. The paper gives none; 0.05 s is usual for 10 inch propellers.
 pub const ROTOR_LAG_S: f64 = 0.05;
 
 /// What of a vehicle is not in the map of its rotors.
@@ -40,7 +39,7 @@ pub struct Body {
     pub mass_kg: f64,
     /// Principal moments of inertia about x, y, z, kg m2.
     pub inertia_kg_m2: Vector3<f64>,
-    /// Time constant of a rotor's first-order lag, s.
+    /// Lag of a rotor in hover at the reference voltage, s: with the motor's share of loss, that is the rotor's inertia.
     pub rotor_lag_s: f64,
 }
 

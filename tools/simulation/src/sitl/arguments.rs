@@ -9,7 +9,7 @@ use super::plan::Manoeuvre;
 
 /// One vehicle for the simulators of PX4, ArduPilot and Betaflight
 ///
-/// The plant is an airframe file: its pair's map at the battery's voltage, rotors that lag, mass and
+/// The plant is an airframe file: its pair's map at the battery's voltage, rotors as flywheels on motors, mass and
 /// inertia. The flight stack, unpatched, connects to it by the interface that it has for outside
 /// simulators, and its outputs are the throttles of single rotors: those of the stack's own
 /// allocator and those of this project's mixer fly the same vehicle.

@@ -57,7 +57,7 @@ impl World {
         self.time_us as f64 * 1e-6
     }
 
-    /// Stops the rotor on an output for good: it spins down by its lag.
+    /// Stops the rotor on an output for good: it is braked by its motor.
     pub fn stop(&mut self, output: usize) {
         if let Some(stopped) = self.stopped.get_mut(output) {
             *stopped = true;
