@@ -11,7 +11,7 @@ keys! { TABLE = "[vehicle]":
     INERTIA_KG_M2 "inertia_kg_m2" = "[0.080, 0.087, 0.160]", Kind::Numbers([3, 3]),
         "Moments of inertia about the forward, right and down axes, kg m2, for simulators.";
     ROTOR_INERTIA "rotor_inertia_kg_m2" = "0.0003", Kind::Number(Range::UpTo(MOST_ROTOR_INERTIA)),
-        "Moment of inertia of one rotor with its motor's bell about its axis, kg m2, for simulators and yaw filters; estimated from the largest thrust without it."
+        "Moment of inertia of one rotor with its motor's bell about its axis, kg m2, for simulators; estimated from the largest thrust without it."
         .refusing("not a propeller's inertia", "a propeller of 10 inch has about 0.00005 kg m2, one of 16 inch 0.0004, one of 28 inch 0.003");
 }
 
