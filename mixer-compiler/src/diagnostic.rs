@@ -14,6 +14,8 @@ use annotate_snippets::{AnnotationKind, Level, Origin, Renderer, Snippet};
 use serde::Serialize;
 
 pub use self::code::{Code, Severity};
+use self::kind::Kind;
+pub use self::source::utf16;
 use self::source::{BYTE_ORDER_MARK, Place, Source};
 pub(crate) use self::wording::{any_of, nearest, number, quoted};
 pub use self::wording::{cut_to, is_plain, printable, printable_lines, rounded, rounded_up, wrapped};
@@ -37,7 +39,8 @@ pub struct Diagnostic {
 
 impl Diagnostic {
     /// The fault of a file of another kind, which has no place.
-    pub(crate) fn of_another_kind(what: &str) -> Self {
+    pub(crate) fn of_another_kind(kind: Kind) -> Self {
+        let what = kind.told();
         let fault = Self::new(Code::Syntax, "", 0..0, format!("not TOML: this is {what}"));
         Self { span: None, ..fault }.help("an airframe file, as `cargo mixer new` writes one")
     }
@@ -128,12 +131,15 @@ pub struct Record {
 
 impl Source {
     /// A source from a path to show, of which what does not print is escaped, and the bytes of the
-    /// file.
+    /// file: UTF-8, or UTF-16 with its byte-order mark.
     ///
     /// # Errors
-    /// Bytes that are not UTF-8, with the place of the first.
+    /// Bytes that are neither, with the place of the first.
     pub fn from_bytes(name: impl Into<String>, bytes: Vec<u8>) -> Result<Self, Diagnostics> {
         let name = printable(&name.into());
+        if let Some(text) = utf16(&bytes) {
+            return Ok(Self { name, text });
+        }
         let bytes = match String::from_utf8(bytes) {
             Ok(text) => return Ok(Self { name, text }),
             Err(error) => error,
@@ -151,7 +157,7 @@ impl Source {
             format!("the file is not UTF-8: byte 0x{byte:02x} at offset {valid}"),
         );
         let fault = match kind::foreign(bytes.as_bytes()) {
-            Some(what) => Diagnostic::of_another_kind(what),
+            Some(what) => Diagnostic::of_another_kind(Kind::Foreign(what)),
             None => fault.help("save the file as UTF-8"),
         };
         Err(Diagnostics::new(source, vec![fault]))
@@ -219,6 +225,14 @@ impl Diagnostics {
                 format!("{place}: {severity}[{}]: {}{help}", fault.code, fault.message)
             })
             .collect()
+    }
+
+    /// The first of them without its code, for files that are no airframes: `x8.params: message; help`.
+    pub fn told(&self) -> String {
+        let first = self.placed().next();
+        first.map_or_else(String::new, |(fault, _)| {
+            format!("{}: {}; {}", self.source.name, fault.message, fault.help)
+        })
     }
 
     /// `x8.toml:4:7`, or the file alone.

@@ -12,7 +12,7 @@ const DOCUMENTS: [(&[u8], &str); 4] = [
 ];
 
 /// Beginnings of files, and what these are.
-const BEGINNINGS: [(&[u8], &str); 9] = [
+const BEGINNINGS: [(&[u8], &str); 12] = [
     (ARCHIVE, "a packed file (unpack it first)"),
     (b"\xd0\xcf\x11\xe0", "a workbook (.xls)"),
     (b"%PDF", "a PDF document"),
@@ -21,11 +21,74 @@ const BEGINNINGS: [(&[u8], &str); 9] = [
     (b"<", "a page of HTML or XML"),
     (b"ULog", "a flight log, which cargo mixer review reads"),
     (b"\xa3\x95", "a flight log, which cargo mixer review reads"),
+    (
+        b"FMT,",
+        "ArduPilot's flight log as text: give the .bin file that it was made of",
+    ),
+    (
+        b"H Product:Blackbox",
+        "a log of Betaflight's blackbox, which no command reads",
+    ),
     (b"\xfd7zXZ", "a packed file (unpack it first)"),
+    (b"\x1f\x8b", "a packed file (unpack it first)"),
 ];
 
-/// Words of parameter files that say which rotors there are.
-pub const PARAMETERS: [&str; 3] = ["CA_ROTOR", "FRAME_CLASS", "mmix"];
+/// What a text is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// An airframe file, whole or not.
+    Airframe,
+    /// The model of a pair without a vehicle.
+    Pair,
+    /// Parameters or a start script of PX4.
+    Px4,
+    /// Parameters of ArduPilot.
+    Ardupilot,
+    /// `diff all` or `dump` of Betaflight or INAV.
+    Betaflight,
+    /// A table, as of a bench.
+    Table,
+    /// A file of another program, and which.
+    Foreign(&'static str),
+    /// None of them.
+    Other,
+}
+
+impl Kind {
+    /// What it is and who reads it, for a message that refuses it.
+    #[must_use]
+    pub fn told(self) -> &'static str {
+        match self {
+            Kind::Airframe => "an airframe file, which cargo mixer check reads",
+            Kind::Pair => "the model of a pair, which cargo mixer new --pair reads",
+            Kind::Px4 => "a parameter file of PX4, which cargo mixer import reads",
+            Kind::Ardupilot => "a parameter file of ArduPilot, which cargo mixer import reads",
+            Kind::Betaflight => "a dump of Betaflight or INAV, which cargo mixer import reads",
+            Kind::Table => {
+                "a table: cargo mixer identify reads the bench file of a pair, cargo mixer predict the run of one rotor"
+            }
+            Kind::Foreign(what) => what,
+            Kind::Other => "a text of another kind",
+        }
+    }
+}
+
+/// Tables of an airframe file.
+const TABLES: [&str; 9] = [
+    "throttle",
+    "pair",
+    "voltage",
+    "air",
+    "layout",
+    "unit",
+    "inverse",
+    "allocation",
+    "vehicle",
+];
+
+/// How names of parameters begin that the stacks do not share.
+const OF_PX4: [&str; 7] = ["CA_", "MC_", "MPC_", "PWM_MAIN_", "PWM_AUX_", "COM_", "SYS_AUTO"];
+const OF_ARDUPILOT: [&str; 7] = ["FRAME_", "Q_", "MOT_", "ATC_", "SERVO", "ARMING_", "PSC_"];
 
 /// The kind of a file that is neither a table of text nor TOML, by its beginning; `None` where that does not tell.
 #[must_use]
@@ -39,20 +102,138 @@ pub fn foreign(bytes: &[u8]) -> Option<&'static str> {
     known.map(|(_, what)| *what)
 }
 
-/// The kind of a text that is no airframe file.
-pub(crate) fn of_text(text: &str) -> &'static str {
-    let first = text
-        .lines()
-        .find(|line| !line.trim().is_empty())
-        .unwrap_or_default();
-    match foreign(text.as_bytes()) {
-        Some(what) => what,
-        None if PARAMETERS.iter().any(|word| text.contains(word)) => {
-            "a parameter file, which cargo mixer import reads"
+/// The kind of a text by its words. Of what several kinds could be the first counts, in the order of [`Kind`].
+#[must_use]
+pub fn of(text: &str) -> Kind {
+    if let Some(what) = foreign(text.as_bytes()) {
+        return Kind::Foreign(what);
+    }
+    let lines = || {
+        let lines = text.trim_start_matches('\u{feff}').lines();
+        lines.map(|line| line.split('#').next().unwrap_or_default().trim())
+    };
+    let keys: Vec<&str> = lines().filter_map(key).collect();
+    if !keys.is_empty() {
+        let is_of_vehicle = keys.iter().any(|key| matches!(*key, "unit" | "layout"));
+        return match keys.contains(&"pair") && !is_of_vehicle {
+            true => Kind::Pair,
+            false => Kind::Airframe,
+        };
+    }
+    if text.lines().any(is_of_a_dump) {
+        return Kind::Betaflight;
+    }
+    let count = |of_stack: &[&str]| lines().filter(|line| is_parameter(line, of_stack)).count();
+    match (count(&OF_PX4), count(&OF_ARDUPILOT)) {
+        (0, 0) => {}
+        (px4, ardupilot) if px4 >= ardupilot => return Kind::Px4,
+        _ => return Kind::Ardupilot,
+    }
+    let first = lines().find(|line| !line.is_empty()).unwrap_or_default();
+    match first.contains([',', ';', '\t']) {
+        true => Kind::Table,
+        false => Kind::Other,
+    }
+}
+
+/// The key of an airframe's table in the table's header, or in a line that gives it, or its name, a value of TOML.
+fn key(line: &str) -> Option<&str> {
+    let header = line.strip_prefix('[').and_then(|line| line.strip_suffix(']'));
+    let path = match header {
+        Some(header) => header.trim_start_matches('[').trim_end_matches(']'),
+        None => {
+            let (path, value) = line.split_once('=')?;
+            let is_toml = value
+                .trim_start()
+                .starts_with(['"', '\'', '{', '[', '\u{201c}', '\u{201d}']);
+            is_toml.then_some(path)?
         }
-        None if first.contains([',', ';', '\t']) => {
-            "a table: cargo mixer identify reads the bench file of a pair, cargo mixer predict the run of one rotor"
+    };
+    let first = path.split('.').next()?.trim();
+    (TABLES.contains(&first) || (header.is_none() && first == "name")).then_some(first)
+}
+
+/// Whether a line is one that Betaflight's and INAV's `diff all` and `dump` have, and no file of parameters.
+/// Older scripts of PX4 have `mixer load`.
+fn is_of_a_dump(line: &str) -> bool {
+    let mut words = line.split_whitespace();
+    match (words.next(), words.next(), words.next()) {
+        (Some("mmix" | "board_name" | "mixer_profile" | "feature"), Some(_), _) => true,
+        (Some("mixer"), Some(name), _) => name != "load",
+        (Some("batch"), Some("start"), None) => true,
+        (Some("#"), Some("Betaflight" | "Cleanflight"), Some("/")) => true,
+        (Some("#"), Some(head), _) => ["Betaflight/", "Cleanflight/", "INAV/"]
+            .iter()
+            .any(|of| head.starts_with(of)),
+        _ => false,
+    }
+}
+
+/// Whether a line gives a parameter that begins like these a value: `NAME VALUE`, a script's `param set NAME VALUE`,
+/// or QGroundControl's line.
+fn is_parameter(line: &str, beginnings: &[&str]) -> bool {
+    let separated = |c: char| c.is_whitespace() || matches!(c, ',' | '=' | '"' | '\'');
+    let words: Vec<&str> = line.split(separated).filter(|word| !word.is_empty()).collect();
+    let is_of_stack = |name: &str| beginnings.iter().any(|begin| name.starts_with(begin));
+    let is_value = |word: &str| word.starts_with('$') || word.parse::<f64>().is_ok();
+    words
+        .windows(2)
+        .any(|pair| is_of_stack(pair[0]) && is_value(pair[1]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn texts_are_told_by_their_words() {
+        for (text, kind) in [
+            ("name = \"x8\"\n[throttle]\nmin = 0.1\n[[unit]]\n", Kind::Airframe),
+            (
+                "\u{feff}# mine\r\n[layout]\r\narm_m = 0,45\r\n[pair]\r\n",
+                Kind::Airframe,
+            ),
+            ("name = \u{201c}x8\u{201d}\n", Kind::Airframe),
+            ("[throttle]\nmin = 0.2\n\n[pair]\n", Kind::Pair),
+            ("[[pair]]\nname = \"front\"\n", Kind::Pair),
+            ("pair.basis = \"cubic\"\n", Kind::Pair),
+            (
+                "# Vehicle-Id Component-Id Name Value Type\n1\t1\tCA_ROTOR_COUNT\t8\t6\n",
+                Kind::Px4,
+            ),
+            ("CA_ROTOR0_PX = 0.35   # was 1\n", Kind::Px4),
+            (
+                "#!/bin/sh\nmixer load a b\nparam set-default -s CA_ROTOR0_PX $ARM\n",
+                Kind::Px4,
+            ),
+            ("FRAME_CLASS,4\nFRAME_TYPE,1\n", Kind::Ardupilot),
+            ("MOT_SPIN_MIN     0.15 @READONLY\n", Kind::Ardupilot),
+            (
+                "# reset configuration to default settings\ndefaults nosave\n\nmixer OCTOX8\n",
+                Kind::Betaflight,
+            ),
+            (
+                "# Betaflight / STM32F7X2 (S7X2) 4.5.1\nset gyro_lpf1_static_hz = 0\n",
+                Kind::Betaflight,
+            ),
+            (
+                "# INAV/MATEKF765 7.1.2\nset platform_type = AIRPLANE\n",
+                Kind::Betaflight,
+            ),
+            ("batch start\nboard_name X\n", Kind::Betaflight),
+            ("upper,lower,thrust_n\n0.3,0.4,5\n", Kind::Table),
+            // What a bench notes above its table.
+            ("name = My prop\nbatch,thrust\n1;2\n", Kind::Other),
+            ("feature,thrust\n1,2\n", Kind::Table),
+            ("SERVO output (us),Thrust (gf)\n1100,5\n", Kind::Table),
+            (
+                "ULog\u{1}",
+                Kind::Foreign("a flight log, which cargo mixer review reads"),
+            ),
+            ("these are mine\n", Kind::Other),
+            ("", Kind::Other),
+        ] {
+            assert_eq!(of(text), kind, "{text}");
         }
-        None => "a text of another kind",
     }
 }

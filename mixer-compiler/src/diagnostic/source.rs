@@ -72,6 +72,20 @@ impl Source {
 /// Some editors put it before the first character of a file.
 pub(crate) const BYTE_ORDER_MARK: char = '\u{feff}';
 
+/// The text of UTF-16 with its byte-order mark, as Windows saves "Unicode text" and what `>` of its older shells
+/// writes; `None` of bytes that do not begin with the mark.
+#[must_use]
+pub fn utf16(bytes: &[u8]) -> Option<String> {
+    let from: fn([u8; 2]) -> u16 = match bytes {
+        [0xff, 0xfe, ..] => u16::from_le_bytes,
+        [0xfe, 0xff, ..] => u16::from_be_bytes,
+        _ => return None,
+    };
+    let units = bytes.chunks_exact(2).map(|pair| from([pair[0], pair[1]]));
+    let text = char::decode_utf16(units).map(|c| c.unwrap_or(char::REPLACEMENT_CHARACTER));
+    Some(text.collect())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -97,5 +111,16 @@ mod tests {
     #[test]
     fn byte_order_mark_takes_no_column() {
         assert_eq!(places("\u{feff}name = 1", &[3]), [(1, 1)]);
+    }
+
+    #[test]
+    fn utf_16_is_read_by_its_mark() {
+        let units = || "\u{feff}name = \"π\"".encode_utf16();
+        let little: Vec<u8> = units().flat_map(u16::to_le_bytes).collect();
+        let big: Vec<u8> = units().flat_map(u16::to_be_bytes).collect();
+        for bytes in [little, big, "\u{feff}name = \"π\"".into()] {
+            let source = Source::from_bytes("a.toml", bytes).unwrap();
+            assert_eq!(source.text, "\u{feff}name = \"π\"");
+        }
     }
 }

@@ -7,7 +7,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue, Error};
 
 use super::value::place_of;
-use crate::diagnostic::kind;
+use crate::diagnostic::kind::{self, Kind};
 use crate::diagnostic::source::Source;
 use crate::diagnostic::{Code, Diagnostic, quoted};
 
@@ -26,9 +26,14 @@ const MOST: usize = 100;
 /// Parses the text and notes its faults. `None` where they leave the values in doubt.
 pub(crate) fn parse<'a>(source: &'a Source, faults: &mut Vec<Diagnostic>) -> Option<DeTable<'a>> {
     let (table, mut errors) = DeTable::parse_recoverable(&source.text);
-    if !errors.is_empty() && is_of_another_kind(&source.text) {
-        faults.push(Diagnostic::of_another_kind(kind::of_text(&source.text)));
-        return None;
+    if !errors.is_empty() && has_no_table(&source.text) {
+        match kind::of(&source.text) {
+            Kind::Airframe | Kind::Pair => {}
+            other => {
+                faults.push(Diagnostic::of_another_kind(other));
+                return None;
+            }
+        }
     }
     let table = table.into_inner();
     let sound = errors.iter().all(|error| error.message() == DUPLICATE);
@@ -64,8 +69,8 @@ pub(crate) fn parse<'a>(source: &'a Source, faults: &mut Vec<Diagnostic>) -> Opt
     sound.then_some(table)
 }
 
-/// Whether no line of a text is the header of a table or the name, which every airframe file has.
-fn is_of_another_kind(text: &str) -> bool {
+/// Whether no line of a text is the header of a table, of whatever name, or the name, which every airframe file has.
+fn has_no_table(text: &str) -> bool {
     let in_name = |c: char| c.is_ascii_alphanumeric() || "_-.[] \"'".contains(c);
     let is_ours = |line: &str| {
         let table = line.strip_prefix('[').and_then(|line| line.strip_suffix(']'));
@@ -111,6 +116,11 @@ fn long_values(table: &DeTable<'_>, text: &str) -> Vec<Range<usize>> {
     found
 }
 
+/// Quotes that word processors and chats put in place of `"` and `'`.
+const TYPOGRAPHIC: [char; 8] = [
+    '\u{201c}', '\u{201d}', '\u{201e}', '\u{2018}', '\u{2019}', '\u{201a}', '\u{ab}', '\u{bb}',
+];
+
 fn diagnostic(source: &Source, error: &Error) -> Diagnostic {
     let said = error.message();
     let said = said.strip_suffix(", expected nothing").unwrap_or(said);
@@ -129,12 +139,22 @@ fn diagnostic(source: &Source, error: &Error) -> Diagnostic {
     let after_word = before.ends_with(|c: char| c.is_ascii_alphanumeric() || c == '_');
 
     let is_digit = |c: char| c.is_ascii_digit();
+    let is_open = rest.is_empty() && said.contains("string");
+    let typographic = match is_open {
+        true => before.chars().find(|c| TYPOGRAPHIC.contains(c)),
+        false => rest.chars().next().filter(|c| TYPOGRAPHIC.contains(c)),
+    };
     let (message, help) = if said == DUPLICATE {
         let help = match written {
             "unit" => "head every unit `[[unit]]`, with two brackets on either side",
             _ => "keep one of the two",
         };
         (&*format!("{} is there twice", quoted(written)), help)
+    } else if let Some(quote) = typographic {
+        (
+            &*format!("the typographic quote {quote}"),
+            "quotes are straight: \"; word processors and chats replace them by their own",
+        )
     } else if written.contains(char::is_control) && !written.contains(char::is_whitespace) {
         (
             "an invisible control character",
@@ -160,7 +180,7 @@ fn diagnostic(source: &Source, error: &Error) -> Diagnostic {
         ("two values in a row", help)
     } else if before.ends_with('.') || rest.starts_with('.') {
         (said, "a decimal point has digits on both sides: 0.5, 1.0")
-    } else if rest.is_empty() && said.contains("string") {
+    } else if is_open {
         (
             "a string that does not end",
             "close it with the quote that opens it",

@@ -31,20 +31,13 @@ pub(crate) fn read_log(path: &Path) -> Result<Vec<u8>, String> {
     up_to(path, LARGEST_LOG_MB).map_err(|error| format!("{}: {error}", path.display()))
 }
 
-/// The text of an airframe or parameter file.
+/// An airframe or parameter file: UTF-8, or UTF-16 with its byte-order mark.
 ///
 /// # Errors
-/// As [`read_small`]; what is not UTF-8.
-pub fn read_text(path: &Path) -> Result<String, String> {
-    String::from_utf8(read_small(path)?).map_err(|_| format!("{}: is not UTF-8 text", path.display()))
-}
-
-/// [`read_text`] with its name.
-///
-/// # Errors
-/// As [`read_text`].
-pub(crate) fn source(path: &Path) -> Result<Source, String> {
-    Ok(Source::new(path.display().to_string(), read_text(path)?))
+/// As [`read_small`]; bytes that are neither, with the place of the first.
+pub fn source(path: &Path) -> Result<Source, String> {
+    let name = path.display().to_string();
+    Source::from_bytes(name, read_small(path)?).map_err(|faults| faults.told())
 }
 
 /// Refuses a file that is there already, unless `force` is given. A device or a pipe has nothing to

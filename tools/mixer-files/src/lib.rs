@@ -21,6 +21,7 @@
 pub mod frame;
 pub mod golden;
 pub mod import;
+pub mod kind;
 pub mod library;
 pub mod new;
 pub mod params;

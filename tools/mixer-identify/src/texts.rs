@@ -1,9 +1,11 @@
 //! Text in, text out: what a front end calls, be it the command line, a page or a notebook.
 
+use mixer_compiler::diagnostic::kind::{self, Kind};
 use serde::Serialize;
 
 use super::air::Air;
 use super::bench::read;
+use super::bench::text::normalised;
 use super::bench::{self, Bench};
 use super::identified::{Identified, Settings, with_runs};
 use super::refusal::Refusal;
@@ -54,8 +56,17 @@ impl<T> Answer<T> {
 /// A file that cannot be read or used.
 pub fn read(text: &Text, settings: &Settings) -> Result<Bench, Refusal> {
     let bytes = text.content.as_ref().map_err(Refusal::clone)?;
-    let log = read::read(&text.name, bytes.as_slice(), &settings.reading)?;
+    let log = read::read(&text.name, bytes.as_slice(), &settings.reading)
+        .map_err(|refusal| of_another_kind(&text.name, bytes).unwrap_or(refusal))?;
     bench::prepare(log, &settings.preparation)
+}
+
+/// The refusal of a file that was meant for another command; `None` of a table and of what nothing is known of.
+fn of_another_kind(name: &str, bytes: &[u8]) -> Option<Refusal> {
+    let kind = kind::of(&normalised(name, bytes).ok()?);
+    let is_table = matches!(kind, Kind::Table | Kind::Other);
+    let needed = "the table with the measurements as CSV";
+    (!is_table).then(|| Refusal::of(name, format!("this is {}", kind.told()), needed))
 }
 
 fn read_all(texts: &[Text], settings: &Settings) -> Result<Vec<Bench>, Vec<Refusal>> {

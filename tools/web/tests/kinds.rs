@@ -14,7 +14,7 @@ fn told(path: &str, options: &[&str]) -> (&'static str, usize) {
         .to_string_lossy()
         .into_owned();
     let options: Vec<String> = options.iter().map(|word| (*word).to_owned()).collect();
-    let kind = kind(&name, &String::from_utf8_lossy(&text), &options);
+    let kind = kind(&name, &String::from_utf8_lossy(&text), &options).unwrap();
     (kind.kind, kind.points)
 }
 
@@ -50,6 +50,6 @@ fn texts() {
     ];
     for (text, options, expected) in cases {
         let options: Vec<String> = options.iter().map(|word| (*word).to_owned()).collect();
-        assert_eq!(kind("file.csv", text, &options).kind, expected, "{text}");
+        assert_eq!(kind("file.csv", text, &options).unwrap().kind, expected, "{text}");
     }
 }

@@ -5,6 +5,7 @@
 //! which every byte is a character. Blanks and signs that spreadsheets put into numbers become ASCII.
 
 use mixer_compiler::diagnostic::kind::foreign;
+use mixer_compiler::diagnostic::utf16;
 
 use crate::refusal::Refusal;
 
@@ -53,18 +54,6 @@ fn plain(c: char) -> char {
         '\u{ff09}' => ')',
         c => c,
     }
-}
-
-/// The text of UTF-16 with its byte-order mark.
-fn utf16(bytes: &[u8]) -> Option<String> {
-    let from: fn([u8; 2]) -> u16 = match bytes {
-        [0xff, 0xfe, ..] => u16::from_le_bytes,
-        [0xfe, 0xff, ..] => u16::from_be_bytes,
-        _ => return None,
-    };
-    let units = bytes.chunks_exact(2).map(|pair| from([pair[0], pair[1]]));
-    let text = char::decode_utf16(units).map(|c| c.unwrap_or(char::REPLACEMENT_CHARACTER));
-    Some(text.collect())
 }
 
 #[cfg(test)]
