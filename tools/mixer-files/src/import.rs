@@ -20,6 +20,7 @@ mod text;
 mod unused;
 
 use mixer_compiler::airframe::Airframe;
+use mixer_compiler::diagnostic::kind::{self, Kind};
 use mixer_compiler::model::PairMap;
 use mixer_compiler::{Source, symmetry};
 use mixer_facts::checklist;
@@ -76,8 +77,7 @@ pub struct Stated {
 pub fn stated(file: &Source) -> Result<Stated, String> {
     let parameters = Parameters::read(file)?;
     let pins = outputs::servos(&parameters);
-    let mut names = parameters.names();
-    let is_dshot = names.any(|name| outputs::is_dshot(name, parameters.or(name, 0.0)));
+    let is_dshot = outputs::is_dshot(&parameters);
     if parameters.whole("FRAME_CLASS") == Some(COAXIAL_MIXER as usize) {
         let pulses = outputs::pulses(&parameters).unwrap_or_default();
         return Ok(Stated {
@@ -136,9 +136,19 @@ pub fn import(file: &Source, pair: Option<&Source>, options: &Options<'_>) -> Re
 }
 
 fn read(file: &Source, arm_m: Option<f64>) -> Result<Imported, String> {
-    if betaflight::is_dump(&file.text) {
-        return betaflight::read(file, arm_m);
-    }
+    let mut imported = match kind::of(&file.text) {
+        Kind::Betaflight => betaflight::read(file, arm_m)?,
+        other @ (Kind::Airframe | Kind::Pair | Kind::Foreign(_)) => {
+            return Err(format!("{}: this is {}", file.name, other.told()));
+        }
+        _ => of_parameters(file, arm_m)?,
+    };
+    let told = imported.without_gap()?;
+    imported.notes.extend(told);
+    Ok(imported)
+}
+
+fn of_parameters(file: &Source, arm_m: Option<f64>) -> Result<Imported, String> {
     let parameters = Parameters::read(file)?;
     let mut imported = if parameters.has("CA_ROTOR_COUNT") || parameters.has("CA_ROTOR0_PX") {
         px4::read(&parameters)?

@@ -5,6 +5,7 @@ mod betaflight;
 pub mod frames;
 mod parameter;
 mod px4;
+pub(crate) mod read;
 mod stack;
 
 use std::fmt::Write as _;
@@ -152,7 +153,7 @@ fn parameters(options: &Options, compiled: &Compiled) -> Result<Parameters, Stri
         (_, Some(pulses), Stack::Betaflight) => betaflight::pulses(pulses, &mut all),
         (_, None, stack) => {
             let names = match stack {
-                Stack::Px4 => "PWM_MAIN_MINn and PWM_MAIN_MAXn (or PWM_AUX_)",
+                Stack::Px4 => "PWM_MAIN_MINn and PWM_MAIN_MAXn (PWM_AUX_MINn, PWM_AUX_MAXn)",
                 Stack::Ardupilot => "MOT_PWM_MIN and MOT_PWM_MAX",
                 Stack::Betaflight => "min_command and max_throttle, which DShot does not use,",
             };
@@ -160,6 +161,13 @@ fn parameters(options: &Options, compiled: &Compiled) -> Result<Parameters, Stri
                 "{names} are missing: --pwm-range gives them, the pulse widths of throttle 0 and 1 on the bench"
             ));
         }
+    }
+    // The simulator's outputs are written.
+    if options.format == Format::GroundStation {
+        all.note(format!(
+            "what describes outputs and battery is not written and stays as it is: {}",
+            read::stays(options.stack)
+        ));
     }
     Ok(all)
 }

@@ -67,6 +67,13 @@ pub(super) fn read(parameters: &Parameters, arm: Option<f64>) -> Result<Imported
     if (class, kind) == (4, 2) {
         notes.push("ArduPilot's V gives the front rotors less yaw; the angles of its arms are not among its parameters".to_owned());
     }
+    if is_quadplane(parameters) {
+        notes.push(
+            "the names of a QuadPlane begin with Q_ and Q_M_: of what `cargo mixer params` writes, FRAME_CLASS, FRAME_TYPE and MOT_* are \
+             Q_FRAME_CLASS, Q_FRAME_TYPE and Q_M_* there"
+                .to_owned(),
+        );
+    }
     if let Some(name) = TILTS.iter().find(|name| parameters.or(name, 0.0) > 0.0) {
         notes.push(format!(
             "{name} is on: the airframe is that of hover; rotors that tilt are not in the model"
@@ -83,7 +90,7 @@ pub(super) fn read(parameters: &Parameters, arm: Option<f64>) -> Result<Imported
         range_v: battery(parameters, mot),
         airmode: Some(("roll-pitch", "ArduPilot asks for roll and pitch at any throttle")),
         notes,
-        pulses: None,
+        ..Imported::default()
     })
 }
 

@@ -11,100 +11,143 @@ const MOST_PINS: usize = 32;
 /// Pulse widths of throttle 0 and 1, microseconds: the defaults of both stacks, and of a bench.
 pub const USUAL_US: [f64; 2] = [1000.0, 2000.0];
 
-/// The outputs of a board: the parameter of what pin `#` drives, the values of it for motors, from
-/// motor 1 on, as firsts and lasts, and the parameter of a pin's pulses, `{}` being MIN or MAX.
-type Bank = (&'static str, &'static [[usize; 2]], &'static str);
-
-/// Of ArduPilot's servos pulses do not count: the motors have their own.
-const BANKS: [Bank; 3] = [
-    ("SERVO#_FUNCTION", &[[33, 40], [82, 85]], ""),
-    ("PWM_MAIN_FUNC#", &[[101, 112]], "PWM_MAIN_{}#"),
-    ("PWM_AUX_FUNC#", &[[101, 112]], "PWM_AUX_{}#"),
-];
-
-/// The pulses of all motors, PX4's before 1.13, and those of ArduPilot.
-const OF_ALL: [&str; 5] = ["PWM_{}", "PWM_MAIN_{}", "PWM_AUX_{}", "MOT_PWM_{}", "Q_M_PWM_{}"];
-
-fn numbered(name: &str, pin: usize) -> String {
-    name.replace('#', &pin.to_string())
+/// An output that drives a motor.
+struct Output {
+    /// What its parameters begin with: `SERVO`, `PWM_MAIN`, `UAVCAN_EC`.
+    bank: String,
+    /// From 1.
+    pin: usize,
+    /// From 0.
+    motor: usize,
+    /// The parameter that says so.
+    name: String,
 }
 
-/// The pins of a bank that drive a motor, from 1, each with the motor, from 0.
-fn motors((function, motors, _): Bank, parameters: &Parameters) -> Vec<(usize, usize)> {
-    let motor = |pin: usize| {
-        let function = parameters.whole(&numbered(function, pin))?;
+/// Values of ArduPilot's `SERVOn_FUNCTION` for motors, from motor 1 on, as firsts and lasts; those of PX4's outputs,
+/// which are `PREFIX_FUNCn` for every driver (`PWM_MAIN`, `UAVCAN_EC`, `VOXL_ESC`).
+const ARDUPILOT_MOTORS: &[[usize; 2]] = &[[33, 40], [82, 85]];
+const PX4_MOTORS: &[[usize; 2]] = &[[101, 112]];
+
+/// The pulses of all motors, PX4's before 1.13, and those of ArduPilot; of ArduPilot's servos they do not count.
+const OF_ALL: [&str; 5] = ["PWM_{}", "PWM_MAIN_{}", "PWM_AUX_{}", "MOT_PWM_{}", "Q_M_PWM_{}"];
+
+/// The outputs that drive motors, by bank and pin.
+fn outputs(parameters: &Parameters) -> Vec<Output> {
+    let output = |name: &str| {
+        let ardupilot = name
+            .strip_prefix("SERVO")
+            .and_then(|rest| rest.strip_suffix("_FUNCTION"));
+        let (bank, pin, motors) = match (ardupilot, name.split_once("_FUNC")) {
+            (Some(pin), _) => ("SERVO", pin, ARDUPILOT_MOTORS),
+            (None, Some((bank, pin))) => (bank, pin, PX4_MOTORS),
+            (None, None) => return None,
+        };
+        let (bank, pin) = (bank.to_owned(), pin.parse().ok().filter(|_| is_number(pin))?);
+        let function = parameters.whole(name)?;
         let mut functions = motors.iter().flat_map(|[first, last]| *first..=*last);
-        Some((pin, functions.position(|of_motor| of_motor == function)?))
+        let motor = functions.position(|of_motor| of_motor == function)?;
+        let name = name.to_owned();
+        Some(Output {
+            bank,
+            pin,
+            motor,
+            name,
+        })
     };
-    (1..=MOST_PINS).filter_map(motor).collect()
+    let mut outputs: Vec<Output> = parameters.names().filter_map(output).collect();
+    outputs.sort_by(|a, b| (&a.bank, a.pin).cmp(&(&b.bank, b.pin)));
+    outputs
 }
 
 /// The pins of ArduPilot's board that drive a motor, from 1, each with the motor, from 0.
 pub(super) fn servos(parameters: &Parameters) -> Vec<(usize, usize)> {
-    motors(BANKS[0], parameters)
+    let outputs = outputs(parameters).into_iter();
+    let servos = outputs.filter(|output| output.bank == "SERVO");
+    servos.map(|output| (output.pin, output.motor)).collect()
 }
 
 /// That pins are not motors, where they are in another order.
 pub(super) fn order(parameters: &Parameters) -> Option<String> {
-    BANKS.into_iter().find_map(|bank| {
-        let motors = motors(bank, parameters);
-        let (pin, motor) = motors.iter().find(|(pin, motor)| pin - 1 != *motor)?;
-        Some(format!(
-            "`channels` counts the stack's motors, from 0, not pins: {} has motor {}, which is channel {motor}",
-            numbered(bank.0, *pin),
-            motor + 1
-        ))
-    })
+    let outputs = outputs(parameters);
+    let Output { motor, name, .. } = outputs.iter().find(|output| output.pin != output.motor + 1)?;
+    Some(format!(
+        "`channels` counts the stack's motors, from 0, not outputs: {name} has motor {}, which is channel {motor}",
+        motor + 1
+    ))
 }
 
 /// Motors, from 0, whose pins have pulses of their own, each with the widths of throttle 0 and 1, us.
 pub(super) fn own_pulses(parameters: &Parameters) -> Vec<(usize, [f64; 2])> {
-    let banks = BANKS.into_iter().filter(|bank| !bank.2.is_empty());
-    let pins = banks.flat_map(|bank| motors(bank, parameters).into_iter().map(move |of| (bank.2, of)));
-    pins.map(|(name, (pin, motor))| {
-        let name = numbered(name, pin);
-        let end = |end: &str, usual: f64| parameters.or(&name.replace("{}", end), usual);
+    let outputs = outputs(parameters).into_iter();
+    let pins = outputs.filter(|output| output.bank.starts_with(PULSED));
+    pins.map(|Output { bank, pin, motor, .. }| {
+        let end = |end: &str, usual: f64| parameters.or(&format!("{bank}_{end}{pin}"), usual);
         (motor, [end("MIN", USUAL_US[0]), end("MAX", USUAL_US[1])])
     })
     .collect()
 }
 
-/// Whether a parameter says that the motors are driven by DShot: ArduPilot's `MOT_PWM_TYPE` of 4 and more,
-/// PX4's `PWM_MAIN_TIMn` of -2 and less.
-pub(super) fn is_dshot(name: &str, value: f64) -> bool {
-    let is_timer = name.starts_with("PWM_") && name.contains("_TIM");
-    (name.ends_with("PWM_TYPE") && value >= 4.0) || (is_timer && value < -1.0)
+/// What the banks of PX4 begin with whose `MINn` and `MAXn` are pulses; those of others are what the bus counts.
+const PULSED: &str = "PWM_";
+
+/// What ArduPilot's names begin with of the motors of a Copter and of a QuadPlane.
+const MOTORS: [&str; 2] = ["MOT_", "Q_M_"];
+
+/// Whether the motors are driven by DShot: ArduPilot's `MOT_PWM_TYPE` of 4 and more, PX4's `PWM_MAIN_TIMn` of -2 and
+/// less.
+pub(super) fn is_dshot(parameters: &Parameters) -> bool {
+    let is_timer = |name: &&str| {
+        let mut numbers = ["PWM_MAIN_TIM", "PWM_AUX_TIM"]
+            .into_iter()
+            .filter_map(|bank| name.strip_prefix(bank));
+        numbers.any(is_number)
+    };
+    let types = MOTORS.map(|motors| parameters.or(&format!("{motors}PWM_TYPE"), 0.0));
+    types.into_iter().any(|of_motors| of_motors >= 4.0)
+        || parameters
+            .names()
+            .filter(is_timer)
+            .any(|name| parameters.or(name, 0.0) < -1.0)
+}
+
+fn is_number(text: &str) -> bool {
+    !text.is_empty() && text.chars().all(|c| c.is_ascii_digit())
 }
 
 /// The pulse widths of throttle 0 and 1, of several that a file has those furthest from the usual;
 /// of all pins where no function is said. DShot has none. Those that other parameters say are not looked at, and
 /// are `Err`, a note (`AP_MotorsMulticopter::get_pwm_output_min`, `update_throttle_range`).
 pub(super) fn pulses(parameters: &Parameters) -> Result<Option<Pulses>, String> {
-    for name in parameters.names() {
-        let value = parameters.or(name, 0.0);
-        let is_type = name.ends_with("PWM_TYPE");
-        let is_end = name.ends_with("PWM_MIN") || name.ends_with("PWM_MAX");
-        if (is_type && value == 8.0) || (is_end && value == 0.0) {
-            return Err(format!(
-                "{name} is {value}: the pulses are those of other parameters, of the throttle stick (RC3_MIN, RC3_MAX) or the \
-                 servos (SERVOn_MIN, SERVOn_MAX); compare them with the bench's"
-            ));
-        }
-        if is_dshot(name, value) {
-            return Ok(None);
+    for motors in MOTORS {
+        for (end, elsewhere) in [("TYPE", 8.0), ("MAX", 0.0), ("MIN", 0.0)] {
+            let name = format!("{motors}PWM_{end}");
+            if parameters.get(&name) == Some(elsewhere) {
+                return Err(format!(
+                    "{name} is {elsewhere}: the pulses are those of other parameters, of the throttle stick (RC3_MIN, RC3_MAX) or the \
+                     servos (SERVOn_MIN, SERVOn_MAX); compare them with the bench's"
+                ));
+            }
         }
     }
-    let of_pins = |is_of_motor: bool| {
-        BANKS.into_iter().flat_map(move |bank| {
-            let motors = motors(bank, parameters);
-            let pins =
-                (1..=MOST_PINS).filter(move |pin| !is_of_motor || motors.iter().any(|(of, _)| of == pin));
-            pins.map(move |pin| numbered(bank.2, pin))
-        })
+    if is_dshot(parameters) {
+        return Ok(None);
+    }
+    let outputs = outputs(parameters);
+    let of_pins: Vec<String> = match outputs.is_empty() {
+        true => {
+            let banks = ["PWM_MAIN", "PWM_AUX"].into_iter();
+            banks
+                .flat_map(|bank| (1..=MOST_PINS).map(move |pin| format!("{bank}_{{}}{pin}")))
+                .collect()
+        }
+        false => {
+            let pulsed = outputs.iter().filter(|output| output.bank.starts_with(PULSED));
+            pulsed
+                .map(|Output { bank, pin, .. }| format!("{bank}_{{}}{pin}"))
+                .collect()
+        }
     };
-    let is_said = of_pins(true).next().is_some();
-    let names = OF_ALL.into_iter().map(str::to_owned).chain(of_pins(is_said));
-    let names: Vec<String> = names.collect();
+    let names: Vec<String> = OF_ALL.into_iter().map(str::to_owned).chain(of_pins).collect();
     let mut pulses = Pulses {
         us: USUAL_US,
         said: Vec::new(),

@@ -103,6 +103,12 @@ impl Parameters {
 
     /// A value. Stacks hold single precision, of which these are the decimal digits.
     pub(super) fn get(&self, name: &str) -> Option<f64> {
+        // What is read is written back or named by `params`: nothing else may be read.
+        #[cfg(test)]
+        assert!(
+            crate::params::read::back(name).is_some(),
+            "{name} is in no table of params/read.rs"
+        );
         let (value, _) = self.values.get(name)?;
         format!("{}", *value as f32).parse().ok()
     }
@@ -164,7 +170,7 @@ mod tests {
         let parameters = Parameters::read(&Source::new("a", text)).unwrap();
         assert_eq!(parameters.count(), 2);
         assert_eq!(parameters.get("CA_ROTOR0_PX"), Some(0.5));
-        assert_eq!(parameters.get("MC_P"), Some(7.0));
+        assert_eq!(parameters.values["MC_P"].0, 7.0);
         for (line, message) in [
             (
                 "param set CA_ROTOR0_PX 0.6",

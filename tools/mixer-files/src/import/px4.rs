@@ -4,7 +4,7 @@
 use mixer_compiler::airframe::Spin;
 
 use super::parameters::Parameters;
-use super::rotors::{Imported, Own, Rotor};
+use super::rotors::{Imported, LeftOut, Own, Rotor};
 
 /// What PX4 takes where a file has no `CA_ROTORi_CT`, no `CA_ROTORi_KM` and no `CA_ROTORi_AZ`.
 const THRUST: f64 = 6.5;
@@ -35,10 +35,19 @@ pub(super) fn read(parameters: &Parameters) -> Result<Imported, String> {
             ));
         }
     }
-    let rotors = (0..count).map(|index| rotor(parameters, index));
+    let (flat, upright): (Vec<usize>, Vec<usize>) =
+        (0..count).partition(|index| is_flat(axis(parameters, *index)));
+    let left_out = flat.into_iter().map(|index| LeftOut {
+        channel: index,
+        place: parameters.place(&format!("CA_ROTOR{index}_AZ")),
+        why: "pushes, its axis lying flat",
+    });
+    let rotors = upright.iter().map(|index| rotor(parameters, *index));
     let mut imported = Imported {
-        origin: format!("{count} rotors of PX4"),
+        origin: format!("{} rotors of PX4", upright.len()),
         rotors: rotors.collect::<Result<_, _>>()?,
+        left_out: left_out.collect(),
+        first_motors: "give it the last number of CA_ROTORn, and its output that motor (PWM_MAIN_FUNCn)",
         range_v: battery(parameters),
         ..Imported::default()
     };
@@ -56,6 +65,7 @@ pub(super) fn read(parameters: &Parameters) -> Result<Imported, String> {
             "CA_ROTOR_COUNT is {count}: rotor {index} and what follows it are left out"
         ));
     }
+    imported.notes.push(scale(&imported.rotors));
     imported.notes.push(
         "the idle is not among PX4's parameters: throttle.min is 0.1 unless the pair's file has another"
             .to_owned(),
@@ -63,10 +73,54 @@ pub(super) fn read(parameters: &Parameters) -> Result<Imported, String> {
     Ok(imported)
 }
 
+/// Part of a thrust's direction below which it lifts nothing: PX4's of a motor that pushes
+/// (`ActuatorEffectivenessRotors::getForwardsMotors`).
+const FLAT: f64 = 0.1;
+
+fn is_flat(axis: [f64; 3]) -> bool {
+    let length = axis.iter().map(|x| x * x).sum::<f64>().sqrt();
+    axis[2].abs() < FLAT * length
+}
+
+/// Distances from the centre in PX4's own files, m: 11001_hexa_cox and 24001_dodeca_cox, 12001_octo_cox.
+const STOCK_ARMS_M: [f64; 3] = [0.5, 0.425, 0.495];
+
+/// Difference of distances that are one, m.
+const SAME_ARM_M: f64 = 1e-3;
+
+/// That places may have any scale: PX4 divides its matrix by its largest entries, so a vehicle flies with each.
+fn scale(rotors: &[Rotor]) -> String {
+    let is = |distance: f64, known: f64| (distance - known).abs() < SAME_ARM_M;
+    let arms = || {
+        rotors
+            .iter()
+            .map(|rotor| libm::hypot(rotor.position_m[0], rotor.position_m[1]))
+    };
+    let sides = rotors
+        .iter()
+        .flat_map(|rotor| [rotor.position_m[0].abs(), rotor.position_m[1].abs()]);
+    let what = if is(arms().fold(0.0, f64::max), 1.0) || is(sides.fold(0.0, f64::max), 1.0) {
+        "the outermost places are at 1 m, as where they were divided by the arm"
+    } else if arms().all(|arm| STOCK_ARMS_M.into_iter().any(|stock| is(arm, stock))) {
+        "the arms are those of PX4's own airframe files, which many vehicles keep"
+    } else {
+        "places are taken as metres"
+    };
+    format!(
+        "{what}: compare position_m with the vehicle, since PX4 flies with places of any scale, and this mixer does not"
+    )
+}
+
+/// The direction of a thrust, of any length.
+fn axis(parameters: &Parameters, index: usize) -> [f64; 3] {
+    let value = |key: &str, default| parameters.or(&format!("CA_ROTOR{index}_{key}"), default);
+    [value("AX", 0.0), value("AY", 0.0), value("AZ", UPWARD)]
+}
+
 fn rotor(parameters: &Parameters, index: usize) -> Result<Rotor, String> {
     let value = |key: &str, default| parameters.or(&format!("CA_ROTOR{index}_{key}"), default);
     let position_m = ["PX", "PY", "PZ"].map(|key| value(key, 0.0));
-    let axis = [value("AX", 0.0), value("AY", 0.0), value("AZ", UPWARD)];
+    let axis = axis(parameters, index);
     let length = axis.iter().map(|x| x * x).sum::<f64>().sqrt();
     let place = |key: &str| parameters.place(&format!("CA_ROTOR{index}_{key}"));
     if axis[2] > 0.0 {
@@ -76,7 +130,8 @@ fn rotor(parameters: &Parameters, index: usize) -> Result<Rotor, String> {
             axis[2]
         ));
     }
-    if value("TILT", 0.0) != 0.0 {
+    // A multirotor, `CA_AIRFRAME` 0, has no tilts.
+    if value("TILT", 0.0) != 0.0 && parameters.or("CA_AIRFRAME", 0.0) != 0.0 {
         return Err(format!(
             "{}: CA_ROTOR{index}_TILT: a rotor that a servo tilts is not in the model; 0 is a fixed one",
             place("TILT")

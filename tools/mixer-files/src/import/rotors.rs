@@ -45,6 +45,17 @@ impl Own {
     };
 }
 
+/// A motor that is no rotor of a pair.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct LeftOut {
+    /// Its number in the stack, from 0.
+    pub(super) channel: usize,
+    /// Where it is said: `file:line`.
+    pub(super) place: String,
+    /// `is missing`.
+    pub(super) why: &'static str,
+}
+
 /// Two rotors in one place.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Unit {
@@ -70,6 +81,10 @@ pub(super) struct Imported {
     /// The stack and the frame, for people.
     pub(super) origin: String,
     pub(super) rotors: Vec<Rotor>,
+    /// The other motors of the stack.
+    pub(super) left_out: Vec<LeftOut>,
+    /// What makes the rotors the stack's first motors.
+    pub(super) first_motors: &'static str,
     /// Least and largest throttle, with the names of what says them.
     pub(super) throttle: Option<([f64; 2], [String; 2])>,
     /// What the motors' outputs send.
@@ -80,4 +95,24 @@ pub(super) struct Imported {
     pub(super) airmode: Option<(&'static str, &'static str)>,
     /// Assumptions, and settings that the files lack.
     pub(super) notes: Vec<String>,
+}
+
+impl Imported {
+    /// Notes on the motors that are no rotors.
+    ///
+    /// # Errors
+    /// One that has rotors behind it: those would get other outputs.
+    pub(super) fn without_gap(&self) -> Result<Vec<String>, String> {
+        let told = self.left_out.iter().map(|LeftOut { channel, place, why }| {
+            match self.rotors.iter().find(|rotor| rotor.channel > *channel) {
+                Some(rotor) => Err(format!(
+                    "{place}: motor {channel} {why}, and motor {} behind it is a rotor: the channels of an airframe are the motors \
+                     from 0 on without a gap; {}",
+                    rotor.channel, self.first_motors
+                )),
+                None => Ok(format!("motor {channel} {why}: it is left out, and its output stays the stack's")),
+            }
+        });
+        told.collect()
+    }
 }

@@ -2,7 +2,14 @@
 
 use mixer_compiler::Source;
 
-use super::{Options, import};
+use std::collections::BTreeMap;
+
+use mixer_compiler::Compiled;
+use mixer_compiler::airframe::{Airframe, Spin};
+use mixer_compiler::diagnostic::kind::{self, Kind};
+
+use super::{Import, Options, import};
+use crate::params::{self, Stack, params};
 
 /// What becomes of a file.
 enum Outcome {
@@ -47,26 +54,8 @@ fn comma(name: &str, value: f64) -> String {
     format!("{name},{value}\n")
 }
 
-fn outcome(text: &str, options: &Options<'_>, expected: &Outcome) -> Result<(), String> {
-    let made = import(&Source::new("a", text), None, options);
-    let (is_so, got) = match (made, expected) {
-        (Ok(made), Noted(words)) => (
-            made.notes.iter().any(|note| note.contains(words)),
-            made.notes.join("\n"),
-        ),
-        (Ok(made), Silent(words)) => (
-            !made.notes.iter().any(|note| note.contains(words)),
-            made.notes.join("\n"),
-        ),
-        (Err(message), Refused(words)) => (message.contains(words), message),
-        (Ok(made), Refused(_)) => (false, made.notes.join("\n")),
-        (Err(message), _) => (false, message),
-    };
-    is_so.then_some(()).ok_or(got)
-}
-
-#[test]
-fn files_as_people_have_them() {
+/// Files, and what becomes of each; of an arm of 0.4 m.
+fn cases() -> Vec<(&'static str, String, Outcome)> {
     let qgc = |name: &str, value: f64| format!("1\t1\t{name}\t{value:.18}\t9\n");
     let script = |name: &str, value: f64| format!("\tparam set-default {name}\t{value} # of the drawing\n");
     let with = |line: &str| px4(X8, comma) + line;
@@ -85,8 +74,13 @@ fn files_as_people_have_them() {
     let octox8 = "mmix 0 1.000 -1.000 1.000 -1.000\nmmix 1 1.000 -1.000 -1.000 1.000\nmmix 2 1.000 1.000 1.000 1.000\n\
                   mmix 3 1.000 1.000 -1.000 -1.000\nmmix 4 1.000 -1.000 1.000 1.000\nmmix 5 1.000 -1.000 -1.000 -1.000\n\
                   mmix 6 1.000 1.000 1.000 -1.000\nmmix 7 1.000 1.000 -1.000 1.000";
+    let half_yaw = |line: &str| {
+        let (rest, yaw) = line.rsplit_once(' ').unwrap();
+        format!("{rest} {}\n", 0.5 * yaw.parse::<f64>().unwrap())
+    };
+    let half_yaw: String = octox8.lines().map(half_yaw).collect();
     let bf = "rear right: outputs 0 and 4 (upper cw); front right: outputs 1 and 5 (upper ccw)";
-    let cases: Vec<(&str, String, Outcome)> = vec![
+    vec![
         // Forms of a file.
         ("commas", px4(X8, comma), Noted(FRAME)),
         (
@@ -222,8 +216,52 @@ fn files_as_people_have_them() {
         ("a multirotor", with("CA_AIRFRAME,0\n"), Silent("CA_AIRFRAME")),
         (
             "a rotor that tilts",
-            with("CA_ROTOR0_TILT,1\n"),
+            with("CA_AIRFRAME,8\nCA_ROTOR0_TILT,1\n"),
             Refused("a servo tilts"),
+        ),
+        (
+            "a tilt that a multirotor has not",
+            with("CA_ROTOR0_TILT,1\n"),
+            Noted(FRAME),
+        ),
+        (
+            "a pusher",
+            instead("COUNT,8", "COUNT,9")
+                + "CA_AIRFRAME,2\nCA_ROTOR8_PX,-0.8\nCA_ROTOR8_AX,1\nCA_ROTOR8_AZ,0\nCA_ROTOR8_KM,0\n",
+            Noted("motor 8 pushes, its axis lying flat: it is left out"),
+        ),
+        (
+            "a pusher before the rotors",
+            with("CA_ROTOR0_AX,1\nCA_ROTOR0_AZ,0\n"),
+            Refused("motor 0 pushes, its axis lying flat, and motor 1 behind it is a rotor"),
+        ),
+        ("no axis", with("CA_ROTOR0_AZ,0\n"), Refused("are all 0")),
+        (
+            "metres",
+            px4(X8, comma),
+            Noted("places are taken as metres: compare position_m with the vehicle"),
+        ),
+        (
+            "places over the arm",
+            px4([0.5f64.sqrt(); 2], comma)
+                .replace("0.35", "0.707107")
+                .replace("0.3\n", "0.707107\n"),
+            Noted("the outermost places are at 1 m, as where they were divided by the arm"),
+        ),
+        (
+            "places of the stock file",
+            px4([0.35; 2], comma).replace("0.3\n", "0.35\n"),
+            Noted("the arms are those of PX4's own airframe files"),
+        ),
+        (
+            "another order of outputs on a bus",
+            with("UAVCAN_EC_FUNC1,102\nUAVCAN_EC_FUNC2,101\nUAVCAN_EC_MAX1,8191\nPWM_MAIN_MAX1,1900\n"),
+            Noted("UAVCAN_EC_FUNC1 has motor 2, which is channel 1"),
+        ),
+        (
+            "pulses beside a bus",
+            with("VOXL_ESC_FUNC1,101\nVOXL_ESC_FUNC2,102\nPWM_MAIN_MAX1,1900\n"),
+            Silent("PWM"),
         ),
         (
             "PX4 before 1.13",
@@ -364,6 +402,11 @@ fn files_as_people_have_them() {
             Noted("Q_M_PWM_MAX is 1900"),
         ),
         (
+            "names of a QuadPlane",
+            quadplane(""),
+            Noted("Q_FRAME_CLASS, Q_FRAME_TYPE and Q_M_* there"),
+        ),
+        (
             "one that tilts",
             quadplane("Q_TILT_ENABLE,1"),
             Noted("rotors that tilt are not in the model"),
@@ -394,6 +437,129 @@ fn files_as_people_have_them() {
             "OCTOX8 reversed",
             dump("mixer octox8\nset yaw_motors_reversed = ON"),
             Noted("rear right: outputs 0 and 4 (upper ccw)"),
+        ),
+        (
+            "Betaflight 3.1 reversed",
+            dump("mixer OCTOX8\nset yaw_motor_direction = -1"),
+            Noted("rear right: outputs 0 and 4 (upper ccw)"),
+        ),
+        (
+            "Betaflight 3.1 reversed, told",
+            dump("mixer OCTOX8\nset yaw_motor_direction = -1"),
+            Noted("yaw_motor_direction is -1: upper_spin has it"),
+        ),
+        (
+            "Betaflight 3.1 as usual",
+            dump("mixer OCTOX8\nset yaw_motor_direction = 1"),
+            Noted(bf),
+        ),
+        (
+            "Cleanflight",
+            dump("mixer OCTOX8\nset yaw_direction = -1"),
+            Noted("rear right: outputs 0 and 4 (upper ccw)"),
+        ),
+        (
+            "direction not said",
+            dump("mixer OCTOX8"),
+            Noted("the file does not say yaw_motors_reversed"),
+        ),
+        (
+            "direction said",
+            dump("mixer OCTOX8\nset yaw_motors_reversed = OFF"),
+            Silent("yaw_motors_reversed"),
+        ),
+        (
+            "OCTOX8P",
+            dump("mixer OCTOX8P"),
+            Noted("rear: outputs 0 and 4 (upper cw); right: outputs 1 and 5 (upper ccw)"),
+        ),
+        ("mmix load", dump("mixer CUSTOM\nmmix load octox8"), Noted(bf)),
+        (
+            "mmix load, and a motor anew",
+            dump("mixer CUSTOM\nmmix load Y6\nmmix 0 1.0 0.0 1.333 -1.0\nmmix 3 1.0 0.0 1.333 1.0"),
+            Noted("rear: outputs 0 and 3 (upper cw)"),
+        ),
+        (
+            "mmix load of a quad",
+            dump("mixer CUSTOM\nmmix load QUADX"),
+            Refused("no coaxial pairs"),
+        ),
+        (
+            "an output that is kept free",
+            dump(
+                "mmix load Y6\nmmix 3 1 0 0 0\nmmix 4 1 0 1.333 -1\nmmix 5 1 -1 -0.667 1\nmmix 6 1 1 -0.667 1",
+            ),
+            Refused(
+                "motor 3 has no part in roll, pitch and yaw, so it is no rotor, and motor 4 behind it is a rotor",
+            ),
+        ),
+        (
+            "one behind the rotors",
+            dump("mmix load Y6\nmmix 6 1 0 0 0"),
+            Noted("motor 6 has no part in roll, pitch and yaw, so it is no rotor: it is left out"),
+        ),
+        (
+            "a place holder of INAV",
+            format!("{octox8}\nmmix 8 -1.200 0.000 0.000 0.000"),
+            Noted("motor 8 has no part in roll, pitch and yaw"),
+        ),
+        (
+            "reordered outputs",
+            dump("mixer OCTOX8\nset motor_output_reordering = 0,1,2,3,4,5,7,6"),
+            Noted("motor_output_reordering is 0,1,2,3,4,5,7,6"),
+        ),
+        (
+            "outputs in order",
+            dump("mixer OCTOX8\nset motor_output_reordering = 0,1,2,3,4,5,6,7"),
+            Silent("motor_output_reordering"),
+        ),
+        (
+            "gains of other factors",
+            dump(&half_yaw),
+            Noted("are multiplied, those of yaw by 0.500"),
+        ),
+        (
+            "gains of these",
+            dump(&format!("mixer CUSTOM\n{octox8}")),
+            Silent("PID gains"),
+        ),
+        (
+            "a VTOL of INAV",
+            format!(
+                "# INAV/X 7\nmixer_profile 1\nset platform_type = AIRPLANE\nmmix 0 1 0 0 0\nmixer_profile 2\n{octox8}\nmixer_profile 1"
+            ),
+            Noted(
+                "the rotors are those of mixer_profile 2; mixer_profile 1, of a vehicle of type AIRPLANE, is left out",
+            ),
+        ),
+        (
+            "its second profile alone, reversed",
+            format!(
+                "mixer_profile 2\nset platform_type = MULTIROTOR\n{octox8}\nset motor_direction_inverted = ON"
+            ),
+            Noted("rear right: outputs 0 and 4 (upper ccw)"),
+        ),
+        (
+            "reversed in the other profile",
+            format!(
+                "mixer_profile 1\nset platform_type = AIRPLANE\nset motor_direction_inverted = ON\nmixer_profile 2\n{octox8}"
+            ),
+            Noted(bf),
+        ),
+        (
+            "a twin of INAV",
+            "mixer_profile 1\nset platform_type = AIRPLANE\nmmix 0 1 0 0 .3\nmmix 1 1 0 0 -.3".to_owned(),
+            Refused("a:2: platform_type is AIRPLANE, no MULTIROTOR"),
+        ),
+        (
+            "a boat",
+            "set platform_type = BOAT\nmmix 0 1 0 0 1\nmmix 1 1 0 0 -1".to_owned(),
+            Refused("platform_type is BOAT"),
+        ),
+        (
+            "engines side by side",
+            dump("mixer CUSTOM\nmmix 0 1 0 0 .3\nmmix 1 1 0 0 -.3"),
+            Refused("no motor has a factor of roll or pitch: those are engines side by side"),
         ),
         (
             "Y6",
@@ -434,12 +600,12 @@ fn files_as_people_have_them() {
         (
             "a broken line",
             dump("mmix 0 1 0 0"),
-            Refused("`mmix 0 1 0 0` is not `mmix 0 THROTTLE"),
+            Refused("`mmix 0 1 0 0` is not `mmix MOTOR THROTTLE"),
         ),
         (
             "a motor missing",
             octox8.replace("mmix 3", "mmix 9"),
-            Refused("is not `mmix 3 THROTTLE ROLL PITCH YAW`, the next motor"),
+            Refused("motor 3 is missing, and motor 4 behind it is a rotor"),
         ),
         (
             "alternate layers",
@@ -458,12 +624,34 @@ fn files_as_people_have_them() {
                 .replace("mmix 4 1.000 -1.000 1.000", "mmix 4 1 -1 0.7"),
             Noted("shorter where the factors of roll and pitch say so"),
         ),
-    ];
+    ]
+}
+
+fn outcome(text: &str, options: &Options<'_>, expected: &Outcome) -> Result<(), String> {
+    let made = import(&Source::new("a", text), None, options);
+    let (is_so, got) = match (made, expected) {
+        (Ok(made), Noted(words)) => (
+            made.notes.iter().any(|note| note.contains(words)),
+            made.notes.join("\n"),
+        ),
+        (Ok(made), Silent(words)) => (
+            !made.notes.iter().any(|note| note.contains(words)),
+            made.notes.join("\n"),
+        ),
+        (Err(message), Refused(words)) => (message.contains(words), message),
+        (Ok(made), Refused(_)) => (false, made.notes.join("\n")),
+        (Err(message), _) => (false, message),
+    };
+    is_so.then_some(()).ok_or(got)
+}
+
+#[test]
+fn files_as_people_have_them() {
     let options = Options {
         arm_m: Some(0.4),
         ..Options::default()
     };
-    let wrong: Vec<String> = cases
+    let wrong: Vec<String> = cases()
         .iter()
         .filter_map(|(name, text, expected)| {
             Some(format!("{name}: {}", outcome(text, &options, expected).err()?))
@@ -471,10 +659,152 @@ fn files_as_people_have_them() {
         .collect();
     assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
     // What has no metres needs an arm.
-    for text in [ardupilot(""), dump("mixer Y6")] {
+    for text in ["FRAME_CLASS,4\nFRAME_TYPE,1\n", "mixer Y6"] {
         assert_eq!(
-            outcome(&text, &Options::default(), &Refused("--arm METRES")),
+            outcome(text, &Options::default(), &Refused("--arm METRES")),
             Ok(())
         );
     }
+}
+
+/// The stack of a file.
+fn stack(text: &str) -> Stack {
+    match kind::of(text) {
+        Kind::Ardupilot => Stack::Ardupilot,
+        Kind::Betaflight => Stack::Betaflight,
+        _ => Stack::Px4,
+    }
+}
+
+/// An airframe of a file, with the paper's pair, and the airframe that it is.
+fn airframe_of(text: &str) -> (Import, Airframe) {
+    let pair = std::fs::read_to_string("../../airframes/isae-x8.toml").unwrap();
+    let options = Options {
+        arm_m: Some(0.4),
+        ..Options::default()
+    };
+    let made = import(
+        &Source::new("a", text),
+        Some(&Source::new("pair.toml", pair)),
+        &options,
+    );
+    let made = made.unwrap_or_else(|error| panic!("{error}\n{text}"));
+    let airframe = Airframe::read(&Source::new("a.toml", made.text.as_str()));
+    (made, airframe.unwrap_or_else(|faults| panic!("{faults}\n{text}")))
+}
+
+/// What a stack's files say of a frame: outputs, spins and places; of Betaflight's factors, which have no metres and a scale
+/// of their own per axis, places over the longest.
+fn frame(airframe: &Airframe, stack: Stack) -> Vec<([usize; 2], Spin, [f64; 3])> {
+    let units = || airframe.units.iter();
+    let longest = |axis: usize| units().fold(1e-9, |most: f64, unit| most.max(unit.position_m[axis].abs()));
+    let scales = match stack {
+        Stack::Betaflight => [longest(0), longest(1), 1.0],
+        _ => [1.0; 3],
+    };
+    let unit = |unit: &mixer_compiler::airframe::Unit| {
+        let place = std::array::from_fn(|axis| unit.position_m[axis] / scales[axis]);
+        ([unit.upper_channel, unit.lower_channel], unit.upper_spin, place)
+    };
+    units().map(unit).collect()
+}
+
+/// Places that are one: parameters have four digits, factors three.
+const SAME_PLACE: f64 = 3e-3;
+
+#[track_caller]
+fn assert_same(a: &Airframe, b: &Airframe, stack: Stack, what: &str) {
+    let (a, b) = (frame(a, stack), frame(b, stack));
+    let is_same = a.len() == b.len()
+        && a.iter().zip(&b).all(|(a, b)| {
+            let apart = a.2.iter().zip(&b.2).map(|(a, b)| (a - b).abs());
+            a.0 == b.0 && a.1 == b.1 && apart.fold(0.0, f64::max) < SAME_PLACE
+        });
+    assert!(is_same, "{what}:\n{a:?}\n{b:?}");
+}
+
+/// A file with parameters set over its own, as a ground station or a command line sets them.
+fn set_over(base: &str, set: &str, stack: Stack) -> String {
+    if stack == Stack::Betaflight {
+        return format!("{base}\n{set}");
+    }
+    let mut values: BTreeMap<String, String> = BTreeMap::new();
+    for line in base.lines().chain(set.lines()) {
+        let content = line.split('#').next().unwrap_or_default();
+        for statement in content.split(';') {
+            let words = super::parameters::words(statement);
+            let is_name = |word: &str| word.starts_with(|c: char| c.is_ascii_uppercase());
+            if let Some(at) = words.iter().position(|word| is_name(word))
+                && let Some(value) = words.get(at + 1).filter(|value| value.parse::<f64>().is_ok())
+            {
+                values.insert(words[at].to_owned(), (*value).to_owned());
+            }
+        }
+    }
+    values
+        .iter()
+        .map(|(name, value)| format!("{name},{value}\n"))
+        .collect()
+}
+
+/// Every file that is read: its parameters give its frame again, and set over those of any other vehicle of the stack,
+/// too, so that none is left that contradicts.
+#[test]
+fn what_is_read_is_written_back() {
+    let bicopter = std::fs::read_to_string("../cargo-mixer/tests/cases/files/bicopter.params").unwrap();
+    let mut files: Vec<(&str, String)> = cases()
+        .into_iter()
+        .filter(|(.., expected)| !matches!(expected, Refused(_)))
+        .map(|(name, text, _)| (name, text))
+        .collect();
+    files.push(("bicopter", bicopter));
+    let mut compiled: BTreeMap<String, Option<Compiled>> = BTreeMap::new();
+    let mut sets: BTreeMap<String, (Stack, Airframe)> = BTreeMap::new();
+    let mut uncompiled = Vec::new();
+    for (name, text) in &files {
+        let (made, airframe) = airframe_of(text);
+        let tables = made
+            .text
+            .lines()
+            .filter(|line| !line.starts_with(['#', 'd']))
+            .collect::<String>();
+        let compiled = compiled
+            .entry(tables)
+            .or_insert_with(|| mixer_compiler::compile(&Source::new("a.toml", made.text)).ok());
+        let Some(compiled) = compiled else {
+            uncompiled.push(*name);
+            continue;
+        };
+        let stack = stack(text);
+        for own in [false, true] {
+            let options = params::Options {
+                own,
+                ..params::Options::of(stack)
+            };
+            let set = params(compiled, "a.toml", &options).unwrap().text;
+            if stack == Stack::Ardupilot && !own {
+                assert!(set.contains("FRAME_CLASS,100\n"), "{name}: {set}");
+                continue;
+            }
+            assert_same(&airframe, &airframe_of(&set).1, stack, name);
+            sets.insert(set, (stack, airframe.clone()));
+        }
+    }
+    // Frames of two pairs, without roll or pitch.
+    assert_eq!(uncompiled, ["alternate layers", "bicopter"]);
+    let mut merged = 0;
+    // Profiles are INAV's, for which nothing is written.
+    for (base_name, base) in files.iter().filter(|(_, base)| !base.contains("mixer_profile")) {
+        for (set, (stack, airframe)) in sets.iter().filter(|(_, (of_set, _))| *of_set == stack(base)) {
+            let told = format!("over {base_name}: {set}");
+            assert_same(
+                airframe,
+                &airframe_of(&set_over(base, set, *stack)).1,
+                *stack,
+                &told,
+            );
+            merged += 1;
+        }
+    }
+    assert!(files.len() > 60 && merged > 500, "{} {merged}", files.len());
 }

@@ -15,6 +15,10 @@ const HOVER_RANGE: [f64; 2] = [0.125, 0.6875];
 /// ArduPilot has no monitor by default, and no voltage without one.
 const MONITOR: &str = "BATT_MONITOR is your board's; 0 measures no voltage, the simulator has 4";
 
+/// Why the battery's range is not written.
+const NO_VOLTAGE: &str =
+    "MOT_BAT_VOLT_MAX and MOT_BAT_VOLT_MIN stay as they are: the airframe has no [voltage]";
+
 /// ArduPilot's density goes by the ground's temperature.
 const GROUND_TEMPERATURE: &str = "BARO_GND_TEMP, the air's temperature, is set before every take-off, as ArduPilot forgets it at \
                                   power-off: without it the density goes by the barometer chip's, and 20 K more are 5 % too much thrust";
@@ -30,6 +34,8 @@ pub(crate) fn settings(compiled: &Compiled, all: &mut Parameters) {
             .real("MOT_BAT_VOLT_MAX", 0.0)
             .real("MOT_BAT_VOLT_MIN", 0.0);
         all.note(MONITOR);
+    } else {
+        all.note(NO_VOLTAGE);
     }
     all.because("The rotors of a pair would slew apart.")
         .real("MOT_SLEW_UP_TIME", 0.0)
@@ -65,6 +71,8 @@ pub(crate) fn own(compiled: &Compiled, all: &mut Parameters) {
             .real("MOT_BAT_VOLT_MAX", voltage.range[1])
             .real("MOT_BAT_VOLT_MIN", voltage.range[0]);
         all.note(MONITOR);
+    } else {
+        all.note(NO_VOLTAGE);
     }
     let [min, max] = compiled.pair.range();
     let throttle = compiled.equal_hover_throttle();

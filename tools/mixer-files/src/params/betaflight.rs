@@ -32,8 +32,17 @@ pub(crate) fn geometry(compiled: &Compiled, all: &mut Parameters) -> Result<(), 
     if let Some((name, _)) = known {
         all.because("Betaflight's frame: channel 0 of the airframe is motor 1.")
             .line(format!("mixer {name}"));
-        return Ok(());
+    } else {
+        custom(&own, all);
     }
+    all.because("Yaw of `mixer` and `mmix` is by the motors' real directions, which the airframe has.")
+        .line("set yaw_motors_reversed = OFF");
+    all.because("No rotor turns backwards.").line("feature -3D");
+    Ok(())
+}
+
+/// `mmix` of these factors.
+fn custom(own: &[[f64; 3]], all: &mut Parameters) {
     let mut reason = all.because(
         "Throttle, roll, pitch and yaw of each motor by the airframe's geometry: channel 0 is motor 1, `mmix 0`.",
     );
@@ -42,7 +51,6 @@ pub(crate) fn geometry(compiled: &Compiled, all: &mut Parameters) -> Result<(), 
         let [roll, pitch, yaw] = [roll, pitch, yaw].map(|factor| factor + 0.0);
         reason.line(format!("mmix {motor} 1.000 {roll:.3} {pitch:.3} {yaw:.3}"));
     }
-    Ok(())
 }
 
 /// Where this mixer puts out the throttles.
@@ -60,8 +68,7 @@ pub(crate) fn settings(compiled: &Compiled, all: &mut Parameters) {
         .whole("motor_output_limit", 100);
     all.because("A rotor of a pair that is held at a speed of its own is none of the map's.")
         .whole("dyn_idle_min_rpm", 0)
-        .line("set rpm_limit = OFF")
-        .line("feature -3D");
+        .line("set rpm_limit = OFF");
     match compiled.airframe.allocation.airmode {
         Airmode::Disabled => all.note(
             "the airmode is \"disabled\", which gives no roll and pitch at throttle 0; Betaflight's AIRMODE counts on them: \
@@ -81,7 +88,8 @@ pub(crate) fn settings(compiled: &Compiled, all: &mut Parameters) {
     }
     hover_throttle(compiled, all);
     all.note(
-        "PID gains of Betaflight's own mixer stay: a PID sum asks for the torque that its factors give in hover at the reference \
+        "PID gains that were tuned with these factors stay, and those tuned with an `mmix` whose factors of an axis reach over another \
+         range than 2 are multiplied by that range over 2: a PID sum asks for the torque that the factors give in hover at the reference \
          voltage (`[vehicle] mass_kg` says where that is). Settings of profiles are those of the active one",
     );
 }
