@@ -19,6 +19,35 @@ pub(crate) fn module(compiled: &Compiled) -> TokenStream {
     let scale = wrench(compiled.scale());
     let ardupilot_scale = wrench(compiled.ardupilot_scale());
     let betaflight_scale = wrench(compiled.betaflight_scale());
+    let airframe = &compiled.airframe;
+    let [min_v, max_v] = airframe
+        .voltage
+        .as_ref()
+        .map_or([0.0; 2], |voltage| voltage.range);
+    let limits = constants(&[
+        (
+            "THROTTLE_MIN",
+            airframe.throttle.min,
+            "Least throttle of a rotor that is not out: the idle.",
+        ),
+        ("THROTTLE_MAX", airframe.throttle.max, "Largest throttle."),
+        (
+            "MIN_V",
+            min_v,
+            "The least voltage of `range_v`, V: below it the voltage is clamped and flagged. 0 where it is ignored.",
+        ),
+        ("MAX_V", max_v, "The highest voltage of `range_v`, V, likewise."),
+        (
+            "REFERENCE_V",
+            airframe.reference_v(),
+            "Voltage of the bench, V: what to pass before one is measured. 0 where it is ignored.",
+        ),
+        (
+            "REFERENCE_DENSITY_KG_M3",
+            airframe.reference_density(),
+            "Density of the bench's air, kg/m^3: what to pass before one is measured. 0 where it is ignored.",
+        ),
+    ]);
     let betaflight_expo = Literal::f32_unsuffixed(compiled.betaflight_expo() as f32);
     let format = mixer_rt::tables::FORMAT;
     let ardupilot_doc = doc(&[match &compiled.airframe.voltage {
@@ -43,6 +72,7 @@ pub(crate) fn module(compiled: &Compiled) -> TokenStream {
             pub const UNITS: usize = #units;
             /// Number of output channels, two per unit.
             pub const CHANNELS: usize = #channels;
+            #limits
             /// What one unit of PX4's normalised setpoints asks for: see
             /// `mixer_rt::Wrench::from_normalised`.
             pub const SCALE: rt::Wrench = #scale;
@@ -61,6 +91,19 @@ pub(crate) fn module(compiled: &Compiled) -> TokenStream {
             #tables
         }
     }
+}
+
+/// Constants in f32, with what is said of each: those that the C header has.
+fn constants(constants: &[(&str, f64, &str)]) -> TokenStream {
+    let constants = constants.iter().map(|(name, value, said)| {
+        let (name, doc) = (identifier(name), doc(&[format!(" {said}")]));
+        let value = Literal::f32_unsuffixed(*value as f32);
+        quote! {
+            #doc
+            pub const #name: f32 = #value;
+        }
+    });
+    constants.collect()
 }
 
 /// The mixer as a type, for code that is generic over airframes.

@@ -5,16 +5,17 @@
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
-use mixer_compiler::Source;
 use mixer_compiler::airframe::Airframe;
+use mixer_compiler::{Compiled, Source};
 use proc_macro::TokenStream;
 use proc_macro2::{Ident, Span};
 use quote::{quote, quote_spanned};
 use syn::LitStr;
 
 /// Compiles the airframe file at the given path into a module that is named after the airframe:
-/// `mix`, `mix_with_health` for rotors that are out, the constants `UNITS`, `CHANNELS`, `SCALE`,
-/// `ARDUPILOT_SCALE`, `BETAFLIGHT_SCALE` and `BETAFLIGHT_EXPO`, and the mixer as a type.
+/// `mix`, `mix_with_health` for rotors that are out, the constants `UNITS`, `CHANNELS`, `THROTTLE_MIN`,
+/// `THROTTLE_MAX`, `MIN_V`, `MAX_V`, `REFERENCE_V`, `REFERENCE_DENSITY_KG_M3`, `SCALE`, `ARDUPILOT_SCALE`,
+/// `BETAFLIGHT_SCALE` and `BETAFLIGHT_EXPO`, and the mixer as a type.
 ///
 /// The path is taken relative to the package (`CARGO_MANIFEST_DIR`) or, where there is no such
 /// file, to the folder of the calling file. The crate that calls the macro depends on `mixer-rt`
@@ -48,6 +49,10 @@ use syn::LitStr;
 /// # Errors
 /// A file that cannot be read or is refused becomes a `compile_error!` at the path, with every
 /// fault at its place in the file. Editing the file rebuilds, whether it was refused or not.
+///
+/// # Warnings
+/// What `cargo mixer check` warns of is a warning at the path, in the form of a deprecation. It breaks no build, also none
+/// that denies warnings; `#[allow(deprecated)]` above the macro silences it.
 #[proc_macro]
 pub fn airframe(input: TokenStream) -> TokenStream {
     match syn::parse::<LitStr>(input) {
@@ -69,7 +74,10 @@ fn expand(literal: &LitStr) -> proc_macro2::TokenStream {
             .and_then(|source| mixer_compiler::compile(&source))
             .map_or_else(
                 |faults| refused(faults.source(), faults.compile_error()),
-                |compiled| compiled.tokens(),
+                |compiled| {
+                    let (tokens, warned) = (compiled.tokens(), warned(&compiled, literal.span()));
+                    quote!(#tokens #warned)
+                },
             ),
     };
     // Makes the file an input of the build: rustc compiles again when it changes, from a refusal as
@@ -78,6 +86,24 @@ fn expand(literal: &LitStr) -> proc_macro2::TokenStream {
     quote! {
         #tokens
         const _: &[u8] = ::core::include_bytes!(#tracked);
+    }
+}
+
+/// The airframe's warnings at the path literal. A macro cannot warn, but the use of something deprecated does. It stays a
+/// warning in builds that deny them, as those of `cargo mixer check` leave the status 0, and `allow(deprecated)` around
+/// the macro switches it off.
+fn warned(compiled: &Compiled, span: Span) -> proc_macro2::TokenStream {
+    let warnings = mixer_compiler::lint(compiled).lines().join("\n");
+    if warnings.is_empty() {
+        return proc_macro2::TokenStream::new();
+    }
+    quote_spanned! { span =>
+        const _: () = {
+            #[deprecated(note = #warnings)]
+            const WARNINGS_OF_THE_AIRFRAME: () = ();
+            #[warn(warnings)]
+            const _: () = WARNINGS_OF_THE_AIRFRAME;
+        };
     }
 }
 
@@ -131,6 +157,12 @@ fn refusal(source: &Source, message: &str, span: Span) -> proc_macro2::TokenStre
         pub mod #module {
             pub const UNITS: usize = 0;
             pub const CHANNELS: usize = 0;
+            pub const THROTTLE_MIN: f32 = 0.0;
+            pub const THROTTLE_MAX: f32 = 1.0;
+            pub const MIN_V: f32 = 0.0;
+            pub const MAX_V: f32 = 0.0;
+            pub const REFERENCE_V: f32 = 0.0;
+            pub const REFERENCE_DENSITY_KG_M3: f32 = 0.0;
             pub const SCALE: ::mixer_rt::Wrench = ::mixer_rt::Wrench::from_array([0.0; 4]);
             pub const ARDUPILOT_SCALE: ::mixer_rt::Wrench = SCALE;
             pub const BETAFLIGHT_SCALE: ::mixer_rt::Wrench = SCALE;

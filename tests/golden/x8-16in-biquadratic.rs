@@ -24,6 +24,18 @@ pub mod x8_16in_biquadratic {
     pub const UNITS: usize = 4;
     /// Number of output channels, two per unit.
     pub const CHANNELS: usize = 8;
+    /// Least throttle of a rotor that is not out: the idle.
+    pub const THROTTLE_MIN: f32 = 0.07;
+    /// Largest throttle.
+    pub const THROTTLE_MAX: f32 = 0.95;
+    /// The least voltage of `range_v`, V: below it the voltage is clamped and flagged. 0 where it is ignored.
+    pub const MIN_V: f32 = 0.0;
+    /// The highest voltage of `range_v`, V, likewise.
+    pub const MAX_V: f32 = 0.0;
+    /// Voltage of the bench, V: what to pass before one is measured. 0 where it is ignored.
+    pub const REFERENCE_V: f32 = 0.0;
+    /// Density of the bench's air, kg/m^3: what to pass before one is measured. 0 where it is ignored.
+    pub const REFERENCE_DENSITY_KG_M3: f32 = 0.0;
     /// What one unit of PX4's normalised setpoints asks for: see
     /// `mixer_rt::Wrench::from_normalised`.
     pub const SCALE: rt::Wrench = rt::Wrench {

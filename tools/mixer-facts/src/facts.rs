@@ -147,10 +147,21 @@ fn gives(list: &mut List, compiled: &Compiled) {
     list.say("airframe", &airframe.name, "", words)
         .json("name", &airframe.name)
         .in_verdict();
-    let words = format!(" in {units} coaxial units");
+    let arms = airframe
+        .units
+        .iter()
+        .map(|unit| libm::hypot(unit.position_m[0], unit.position_m[1]));
+    let arms = [arms.clone().fold(f64::MAX, f64::min), arms.fold(0.0, f64::max)];
+    let told = match arms.map(|arm| format!("{arm:.3}")) {
+        [_, longest] if longest == "0.000" => String::new(),
+        [shortest, longest] if shortest == longest => format!(", arms of {longest} m"),
+        [shortest, longest] => format!(", arms of {shortest} to {longest} m"),
+    };
+    let words = format!(" in {units} coaxial units{told}");
     list.say("rotors", airframe.rotors(), "", words)
         .json("units", units)
         .json("rotors", airframe.rotors())
+        .json("arms_m", arms)
         .in_verdict();
     let frame = airframe.units.iter().map(|unit| {
         let outputs = [unit.upper_channel, unit.lower_channel];

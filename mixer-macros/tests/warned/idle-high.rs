@@ -1,0 +1,7 @@
+//! Compiles, with what `cargo mixer check` warns of.
+
+mixer_macros::airframe!("tests/warned/idle-high.toml");
+
+fn main() {
+    let _ = x8::CHANNELS;
+}
