@@ -8,6 +8,7 @@ use std::io::{self, Read};
 use std::str::FromStr;
 
 use csv::{ByteRecord, ReaderBuilder, Terminator};
+use mixer_compiler::airframe::Airframe;
 
 const VOLTAGE: &str = "voltage_v";
 const DENSITY: &str = "density_kg_m3";
@@ -80,6 +81,26 @@ impl<R: Read> Rows<R> {
                 message,
             })),
         }
+    }
+
+    /// A sentence for each column that an airframe ignores.
+    pub fn ignored(&self, airframe: &Airframe) -> Vec<String> {
+        let columns = [
+            (
+                self.columns.voltage.is_some() && airframe.voltage.is_none(),
+                VOLTAGE,
+                "[voltage]",
+            ),
+            (
+                self.columns.density.is_some() && airframe.air.is_none(),
+                DENSITY,
+                "[air]",
+            ),
+        ];
+        let ignored = columns.into_iter().filter(|(is_ignored, ..)| *is_ignored);
+        let told = ignored
+            .map(|(_, column, table)| format!("{column} is ignored: {} has no {table}", airframe.name));
+        told.collect()
     }
 
     /// The next row and its line, or `None` at the end. Blank lines are passed over.
