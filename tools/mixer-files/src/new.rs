@@ -44,3 +44,95 @@ pub fn new(frame: &NewFrame<'_>, pair: Option<&Source>) -> Result<String, Error>
     let text = frame.airframe(&tables, bias).map_err(Error::Frame)?;
     Ok(printable_lines(&text))
 }
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+    use crate::frame::Frame;
+    use crate::import::{self, import};
+    use crate::params::{Options, Stack, params};
+
+    /// The shipped files whose pairs differ.
+    const PAIRS: [&str; 7] = [
+        "airframes/isae-x8.toml",
+        "airframes/x8-11in-cubic.toml",
+        "airframes/x8-11in-least-power.toml",
+        "airframes/x8-16in-biquadratic.toml",
+        "airframes/x8-16in-quartic.toml",
+        "airframes/x8-22in-cubic.toml",
+        "examples/simulator/x8-quartic.toml",
+    ];
+
+    fn file(path: &str) -> Source {
+        let text = std::fs::read_to_string(format!("../../{path}"));
+        Source::new(path, text.unwrap_or_else(|error| panic!("{path}: {error}")))
+    }
+
+    /// The codes of what `check` warns of.
+    #[track_caller]
+    fn warned(text: &str) -> BTreeSet<String> {
+        let compiled = mixer_compiler::compile(&Source::new("a.toml", text));
+        let compiled = compiled.unwrap_or_else(|faults| panic!("{faults}\n{text}"));
+        let records = mixer_compiler::lint(&compiled).records();
+        records.into_iter().map(|record| record.code).collect()
+    }
+
+    /// Whatever frame is written around whatever pair, it brings no warning that the pair's own file has not.
+    #[test]
+    fn no_frame_warns_of_itself() {
+        for path in PAIRS {
+            let pair = file(path);
+            let of_pair = warned(&pair.text);
+            for (frame, word, _) in Frame::ALL {
+                let arm_m = (frame != Frame::Single).then_some(0.45);
+                let orders = Stack::ALL.into_iter().map(|(stack, ..)| Some(stack));
+                for outputs in [None].into_iter().chain(orders.filter(|_| path == PAIRS[0])) {
+                    let wanted = NewFrame {
+                        arm_m,
+                        outputs,
+                        ..NewFrame::of(frame)
+                    };
+                    // Not every stack has every frame.
+                    let text = match new(&wanted, Some(&pair)) {
+                        Ok(text) => text,
+                        Err(error) if outputs.is_some() => {
+                            assert!(error.to_string().starts_with("--outputs: "), "{error}");
+                            continue;
+                        }
+                        Err(error) => panic!("{error}"),
+                    };
+                    let more: Vec<String> = warned(&text).difference(&of_pair).cloned().collect();
+                    assert!(more.is_empty(), "{word} {outputs:?} of {path}: {more:?}\n{text}");
+                }
+            }
+        }
+    }
+
+    /// Nor does what is imported of a stack's own parameters of it.
+    #[test]
+    fn no_import_warns_of_itself() {
+        let pair = file(PAIRS[0]);
+        for (stack, ..) in Stack::ALL {
+            let wanted = NewFrame {
+                arm_m: Some(0.45),
+                outputs: Some(stack),
+                ..NewFrame::of(Frame::X8)
+            };
+            let text = new(&wanted, Some(&pair)).unwrap();
+            let compiled = mixer_compiler::compile(&Source::new("a.toml", text)).unwrap();
+            let options = Options {
+                own: true,
+                ..Options::of(stack)
+            };
+            let set = params(&compiled, "a.toml", &options).unwrap().text;
+            let options = import::Options {
+                arm_m: Some(0.45),
+                ..import::Options::default()
+            };
+            let made = import(&Source::new("a", set), Some(&pair), &options).unwrap();
+            assert_eq!(warned(&made.text), BTreeSet::new(), "{stack:?}\n{}", made.text);
+        }
+    }
+}
