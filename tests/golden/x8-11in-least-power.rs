@@ -53,14 +53,14 @@ pub mod x8_11in_least_power {
     };
     /// Torques of PID sums of 1000 in Betaflight, and the thrust of its full throttle stick.
     pub const BETAFLIGHT_SCALE: rt::Wrench = rt::Wrench {
-        roll_nm: 19.733097,
-        pitch_nm: 19.733097,
-        yaw_nm: 2.079688,
+        roll_nm: 18.672178,
+        pitch_nm: 18.672178,
+        yaw_nm: 1.967877,
         thrust_n: 107.32853,
     };
     /// e of Betaflight's throttle stick: (1 - e) throttle + e throttle^2 of that thrust, above 1
     /// (2 - e) throttle^2 + (e - 1) throttle^3.
-    pub const BETAFLIGHT_EXPO: f32 = 1.0;
+    pub const BETAFLIGHT_EXPO: f32 = 1.3192822;
     /// The mixer of `x8-11in-least-power` as a type, for code that is generic over airframes.
     #[derive(Clone, Copy, Debug, Default)]
     pub struct X8_11inLeastPower;
