@@ -54,6 +54,8 @@ pub struct Flywheel {
     pub inertia_kg_m2: f64,
     /// The propeller's diameter that J is estimated from, m; `None` where J is given.
     pub estimated_diameter_m: Option<f64>,
+    /// Throttle of all rotors.
+    pub hover_throttle: f64,
     /// w, rad/s, estimated from the largest thrust, within some 15 %.
     pub speed_rad_s: f64,
     /// Q, N m: by the slope of the pair's torque as one rotor turns faster and the other slower.
@@ -88,6 +90,7 @@ impl Flywheel {
         (lead_s > 0.0).then_some(Flywheel {
             inertia_kg_m2: inertia,
             estimated_diameter_m: inertia_kg_m2.is_none().then_some(diameter_m),
+            hover_throttle: hover,
             speed_rad_s,
             torque_nm,
             lead_s,
@@ -99,6 +102,18 @@ impl Flywheel {
     pub fn of(airframe: &Airframe) -> Option<Flywheel> {
         let vehicle = airframe.vehicle.as_ref()?;
         Flywheel::new(airframe, vehicle.mass_kg, vehicle.rotor_inertia_kg_m2)
+    }
+
+    /// The same rotor of the inertia that a lag, s, implies.
+    #[must_use]
+    pub fn with_lag(self, lag_s: f64) -> Flywheel {
+        let lead_s = lag_s * self.first_over_steady;
+        Flywheel {
+            inertia_kg_m2: self.inertia_kg_m2 * lead_s / self.lead_s,
+            estimated_diameter_m: None,
+            lead_s,
+            ..self
+        }
     }
 
     /// The lag tau of a rotor, s.
@@ -147,4 +162,60 @@ pub fn ohmic_share(exponent: f64, throttle: f64) -> f64 {
     let share = 2.0 / taken - 1.0;
     let c = throttle / EXPONENT_THROTTLE * share / ((1.0 - share) * (1.0 - share));
     2.0 * c / (2.0 * c + 1.0 + (4.0 * c + 1.0).sqrt())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Source;
+
+    fn airframe(name: &str) -> Airframe {
+        let path = format!("{}/../airframes/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+        let text = std::fs::read_to_string(&path).unwrap();
+        Airframe::read(&Source::new(path, text)).unwrap()
+    }
+
+    #[test]
+    fn the_largest_thrust_tells_the_diameter() {
+        for (name, mass_kg, inch) in [
+            ("x8-11in-cubic", 3.0, 11.0),
+            ("x8-11in-least-power", 3.0, 11.0),
+            ("x8-16in-quartic", 6.5, 16.2),
+            ("x8-22in-cubic", 10.0, 22.0),
+        ] {
+            let rotor = Flywheel::new(&airframe(name), mass_kg, None).unwrap();
+            let found = rotor.estimated_diameter_m.unwrap() / (0.0254 * inch);
+            assert!((found - 1.0).abs() < 0.09, "{name}: {found}");
+            assert!((0.2..0.6).contains(&rotor.lead_s), "{name}: {rotor:?}");
+        }
+    }
+
+    #[test]
+    fn of_inertia_and_lag_one_gives_the_other() {
+        let of = |inertia| Flywheel::new(&airframe("x8-16in-quartic"), 6.5, Some(inertia)).unwrap();
+        let (rotor, heavy) = (of(3e-4), of(6e-4));
+        assert!((heavy.lead_s / rotor.lead_s - 2.0).abs() < 1e-12);
+        let same = rotor.with_lag(heavy.lag_s());
+        assert!(
+            (same.inertia_kg_m2 / 6e-4 - 1.0).abs() < 1e-12
+                && (same.lead_s / heavy.lead_s - 1.0).abs() < 1e-12
+        );
+        // J w / (2 Q), with the torque of isolated rotors of the same thrust within a third: the lower one works harder.
+        let of_thrust_nm = 0.05 * 0.0254 * 16.2 * 6.5 * 9.8 / 8.0;
+        assert!(
+            (1.0..1.34).contains(&(rotor.torque_nm / of_thrust_nm)),
+            "{rotor:?}"
+        );
+        assert_eq!(Flywheel::new(&airframe("x8-16in-quartic"), 40.0, None), None);
+    }
+
+    #[test]
+    fn the_share_is_that_of_the_exponent_where_it_holds() {
+        for (exponent, share) in [(1.6, 0.25), (1.75, 1.0 / 7.0), (1.9, 1.0 / 19.0)] {
+            assert!((ohmic_share(exponent, 0.8) - share).abs() < 1e-12);
+            assert!(ohmic_share(exponent, 0.4) < share);
+        }
+        // Of a speed that is held nothing is known of the motor.
+        assert_eq!(ohmic_share(0.0, 0.5), ohmic_share(TYPICAL_EXPONENT, 0.5));
+    }
 }

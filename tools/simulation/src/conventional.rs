@@ -14,8 +14,6 @@ use crate::vehicle::ROTORS;
 #[derive(Clone, Debug)]
 pub struct ConventionalMixer {
     tables: IsolatedTables,
-    /// What every thrust command is multiplied by.
-    thrust_factor: f64,
 }
 
 impl ConventionalMixer {
@@ -30,17 +28,7 @@ impl ConventionalMixer {
         let voltage = CorrectionTables::new(airframe).voltage;
         Ok(ConventionalMixer {
             tables: IsolatedTables::of(airframe, effectiveness, voltage),
-            thrust_factor: 1.0,
         })
-    }
-
-    /// The same mixer, its thrust commands multiplied by `factor`: what a controller does that
-    /// knows, from an estimator or from a test flight, how much more than the weight it must
-    /// command in hover.
-    #[must_use]
-    pub fn with_thrust_factor(mut self, factor: f64) -> Self {
-        self.thrust_factor *= factor;
-        self
     }
 
     /// Throttles for the wrench `[roll, pitch, yaw (N m), thrust (N)]` at `voltage_v`, limited to
@@ -53,8 +41,6 @@ impl ConventionalMixer {
         wrench: &Vector4<f64>,
         voltage_v: f64,
     ) -> Result<(SVector<f64, ROTORS>, bool), SetpointError> {
-        let mut wrench = *wrench;
-        wrench[3] *= self.thrust_factor;
         let setpoint = Wrench::from_array(wrench.map(|x| x as f32).into());
         let (throttle, within) = self.tables.conventional(&setpoint, voltage_v as f32)?;
         let throttle = SVector::from_fn(|channel, _| f64::from(throttle[channel]));

@@ -27,7 +27,8 @@
 //! the paper gives nothing to model them by: drag, ground effect, wake between units. The rotors' inertia about axes in their plane is the frame's.
 
 use mixer_compiler::airframe::Airframe;
-use mixer_compiler::{atmosphere, flywheel};
+use mixer_compiler::atmosphere;
+use mixer_compiler::flywheel::{self, Flywheel};
 use nalgebra::{Quaternion, SVector, Vector3};
 
 use crate::battery::Battery;
@@ -36,9 +37,6 @@ use crate::motor::{Motor, NO_LOAD};
 use crate::pair::Pair;
 use crate::state::State;
 use crate::vehicle::{Body, GRAVITY_M_S2};
-
-/// Half the difference of throttles at which the slope of the torque is taken.
-const NEARBY: f64 = 1e-4;
 
 /// Steps in which load and voltage settle.
 const SETTLING: u32 = 30;
@@ -86,8 +84,6 @@ pub struct Plant<const R: usize> {
     motor: Motor,
     /// J times the speed at full throttle at the reference, N m s.
     momentum_nms: f64,
-    /// T in hover, s.
-    lead_s: f64,
     /// Density of the air on the bench, that of the sea level where the file has none.
     bench_kg_m3: f64,
     /// Thrust and torque of every pair over those of the file.
@@ -110,23 +106,19 @@ impl<const R: usize> Plant<R> {
         });
         let units: Vec<Unit> = units.collect();
         let pair = Pair::new(&airframe.pair, &airframe.throttle);
-        let upwards = units.iter().map(|unit| -unit.axis.z).sum::<f64>();
-        let share_n = body.mass_kg * GRAVITY_M_S2 / upwards;
-        let hover = crossing(|throttle| pair.efforts([throttle; 2])[0] - share_n).unwrap_or(1.0);
-        let hover = hover.clamp(airframe.throttle.min + NEARBY, 1.0);
         let reference_v = airframe.voltage.as_ref().map(|voltage| voltage.reference);
         let motor = Motor::new(flywheel::exponent(airframe), NO_LOAD, reference_v);
-        let speed = motor.speed_at_reference(hover);
-        let motor = motor.with_lag(body.rotor_lag_s, speed);
-        // Of a torque k (n_l^2 - n_u^2), by its slope where both throttles part.
-        let [less, more] = [-NEARBY, NEARBY].map(|d| pair.efforts([hover - d, hover + d])[1]);
-        let torque_nm = motor.slope(speed) * (more - less) / (8.0 * NEARBY * speed);
+        // What cannot hover turns without reaction.
+        let rotor = Flywheel::new(airframe, body.mass_kg, None).map(|rotor| rotor.with_lag(body.rotor_lag_s));
+        let [throttle, momentum_nms] = rotor.map_or([1.0, 0.0], |rotor| {
+            [rotor.hover_throttle, 2.0 * rotor.lead_s * rotor.torque_nm]
+        });
+        let speed = motor.speed_at_reference(throttle);
         Plant {
             units,
             pair,
-            motor,
-            momentum_nms: motor.momentum_nms(torque_nm),
-            lead_s: body.rotor_lag_s * motor.first_over_steady(speed),
+            motor: motor.with_lag(body.rotor_lag_s, speed),
+            momentum_nms: momentum_nms / speed,
             bench_kg_m3: airframe
                 .air
                 .as_ref()
@@ -153,12 +145,6 @@ impl<const R: usize> Plant<R> {
         Plant { scale, ..self }
     }
 
-    /// T = J w / (2 Q) and the lag of a rotor in hover at the reference, s: their ratio is that of the torques at the begin and
-    /// at the end of a step of yaw.
-    pub fn response_s(&self) -> [f64; 2] {
-        [self.lead_s, self.body.rotor_lag_s]
-    }
-
     /// The state with all rotors in steady state under `command`.
     #[must_use]
     pub fn steady(&self, state: &State<R>, command: &SVector<f64, R>) -> State<R> {
@@ -175,11 +161,17 @@ impl<const R: usize> Plant<R> {
     pub fn hover_throttle(&self) -> Option<f64> {
         let rotors = 2 * self.units.len();
         let alike = |throttle| SVector::from_fn(|channel, _| if channel < rotors { throttle } else { 0.0 });
-        let lift = |throttle: f64| {
+        let lifts = |throttle: f64| {
             let state = self.steady(&State::level(Vector3::zeros(), 0.0), &alike(throttle));
-            -self.rotor_wrench(&state, &SVector::zeros()).0.z
+            let (force, _) = self.rotor_wrench(&state, &SVector::zeros());
+            -force.z > self.body.mass_kg * GRAVITY_M_S2
         };
-        crossing(|throttle| lift(throttle) - self.body.mass_kg * GRAVITY_M_S2)
+        let [mut low, mut high] = [0.0, 1.0];
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            *(if lifts(middle) { &mut high } else { &mut low }) = middle;
+        }
+        lifts(1.0).then_some(high)
     }
 
     /// Current of the battery, A.
@@ -260,18 +252,4 @@ impl<const R: usize> Plant<R> {
             charge_ah: self.current_a(state) / 3600.0,
         }
     }
-}
-
-/// The throttle from 0 to 1 at which what grows with it becomes positive; `None` where it does not.
-fn crossing(of: impl Fn(f64) -> f64) -> Option<f64> {
-    let (mut low, mut high) = (0.0, 1.0);
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        (low, high) = if of(middle) < 0.0 {
-            (middle, high)
-        } else {
-            (low, middle)
-        };
-    }
-    (of(1.0) > 0.0).then_some(0.5 * (low + high))
 }

@@ -78,7 +78,7 @@ pub fn run(arguments: &Arguments) -> Result<(), String> {
             "--fail: there is no output {output}, the vehicle has 0 to {last}"
         ));
     }
-    let [lead_s, lag_s] = vehicle.plant.response_s();
+    let [lead_s, lag_s] = [vehicle.rotor.lead_s, vehicle.rotor.lag_s()];
     eprintln!(
         "{}: {} rotors (T {lead_s:.3} s, lag {lag_s:.3} s), {} kg, hover at a throttle of {:.4}",
         vehicle.name, vehicle.rotors, vehicle.mass_kg, vehicle.hover_throttle

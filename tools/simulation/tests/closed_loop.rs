@@ -3,10 +3,11 @@
 //!
 //! One test per scenario, because flying is what takes the time here.
 
+use nalgebra::Vector4;
 use simulation::air::{Air, Room};
-use simulation::controller::Tilt;
-use simulation::flight::{Flight, FlightPair, Scenario, fly};
-use simulation::manoeuvre::END_S;
+use simulation::controller::{PERIOD_S, Tilt};
+use simulation::flight::{ClosedLoop, Flight, FlightPair, Scenario, fly, periods};
+use simulation::manoeuvre::{END_S, SETTLING_S, reference};
 use simulation::mixer::{Method, Mixer};
 use simulation::tracking::{Spread, ratio};
 use simulation::vehicle;
@@ -157,17 +158,27 @@ fn equal_seeds_give_equal_flights_and_others_do_not() {
 #[test]
 fn a_known_hover_thrust_makes_up_for_nearly_all_of_the_difference_in_z() {
     let airframe = vehicle::airframe().unwrap();
-    let Mixer::Conventional(conventional) = Mixer::new(Method::Conventional, &airframe).unwrap() else {
-        unreachable!("asked for the conventional mixer")
-    };
-    let calibrated = Mixer::Conventional(Box::new(conventional.with_thrust_factor(31.4 / 26.4256)));
+    let conventional = Mixer::new(Method::Conventional, &airframe).unwrap();
     let scenario = Scenario {
         air: Air::Unsteady,
         tilt: Tilt::Decoupled,
     };
     for seed in 1..=3 {
-        let room = Room::new(scenario.air, seed);
-        let calibrated = fly(&airframe, &calibrated, scenario.tilt, room).unwrap();
+        let mut flown = ClosedLoop::new(&airframe, scenario.tilt, Room::new(scenario.air, seed));
+        let mut fly = |number: i32| {
+            let reference = reference(f64::from(number) * PERIOD_S);
+            let known = |wrench: &Vector4<f64>, volts: f64| {
+                let factor = Vector4::new(1.0, 1.0, 1.0, 31.4 / 26.4256);
+                conventional.mix(&wrench.component_mul(&factor), volts)
+            };
+            flown.period(number, &reference, known).unwrap()
+        };
+        for number in -periods(SETTLING_S)..0 {
+            fly(number);
+        }
+        let calibrated = Flight {
+            samples: (0..periods(END_S)).map(fly).collect(),
+        };
         let pair = scenario.fly(&airframe, seed).unwrap();
         let mse = |flight: &Flight| flight.tracking_error().mse.z;
         let coaxial = mse(&pair.coaxial);

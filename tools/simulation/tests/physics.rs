@@ -2,15 +2,16 @@
 
 use mixer_compiler::Source;
 use mixer_compiler::airframe::Airframe;
+use mixer_compiler::flywheel::Flywheel;
 use mixer_compiler::model::PairMap;
 use mixer_compiler::model::effectiveness::Effectiveness;
-use nalgebra::{DVector, SVector, Vector3, Vector4};
+use nalgebra::{DVector, Matrix3, SVector, Vector3, Vector4};
 use simulation::battery::{self, Battery};
 use simulation::conventional::ConventionalMixer;
 use simulation::mixer::{Method, Mixer};
 use simulation::plant::{Disturbance, Plant};
 use simulation::state::State;
-use simulation::vehicle::{self, BODY, GRAVITY_M_S2, INERTIA_KG_M2, ROTORS, WEIGHT_N};
+use simulation::vehicle::{self, BODY, Body, GRAVITY_M_S2, INERTIA_KG_M2, ROTORS, WEIGHT_N};
 
 /// A supply at the voltage of the paper's bench, whatever the load.
 const REFERENCE: Battery = Battery {
@@ -129,49 +130,55 @@ fn without_air_frame_and_rotors_conserve_their_angular_momentum() {
     assert!(lost < 1e-9, "{lost:e}");
 }
 
-/// A step of yaw in hover: its torque on the frame is at first r times the one that lasts, of its sense, and falls with the lag.
+/// A step of yaw: its torque on the frame is at first r times the one that lasts, of its sense, and falls with the lag. The
+/// exponent of the file holds at a throttle of 0.8, at which 6.82 kg hover; where the vehicle hovers it is larger. The no-load
+/// current, which the formula leaves out, makes r some 2 % larger.
 #[test]
 fn yaw_begins_with_the_reaction_of_the_rotors() {
-    for (exponent, least, most) in [(1.6, 2.5, 3.4), (1.75, 4.0, 5.8), (1.9, 10.0, 15.0)] {
+    for (exponent, r) in [(1.6, 2.5), (1.75, 4.0), (1.9, 10.0)] {
         let file = format!("{}/../../airframes/isae-x8.toml", env!("CARGO_MANIFEST_DIR"));
-        let text = std::fs::read_to_string(&file)
-            .unwrap()
-            .replace("_exponent = 1.75", &format!("_exponent = {exponent}"));
+        let text = std::fs::read_to_string(&file).unwrap();
+        let text = text.replace("_exponent = 1.75", &format!("_exponent = {exponent}"));
         let airframe = Airframe::read(&Source::new(file, text)).unwrap();
-        let plant = Plant::<ROTORS>::new(&airframe, BODY, REFERENCE, SVector::zeros());
-        let throttle = plant.hover_throttle().unwrap();
-        let mut command = SVector::<f64, ROTORS>::repeat(throttle);
-        let hover = plant.steady(&State::level(Vector3::zeros(), 0.0), &command);
-        for unit in &airframe.units {
-            let sense = 1e-3 * unit.spin_sign(airframe.pair.upper_spin);
-            command[unit.upper_channel] -= sense;
-            command[unit.lower_channel] += sense;
+        for mass_kg in [BODY.mass_kg, 6.82] {
+            let body = Body { mass_kg, ..BODY };
+            let plant = Plant::<ROTORS>::new(&airframe, body, REFERENCE, SVector::zeros());
+            let rotor = Flywheel::new(&airframe, mass_kg, None).unwrap();
+            let mut command = SVector::<f64, ROTORS>::repeat(rotor.hover_throttle);
+            let hover = plant.steady(&State::level(Vector3::zeros(), 0.0), &command);
+            for unit in &airframe.units {
+                let sense = 1e-3 * unit.spin_sign(airframe.pair.upper_spin);
+                command[unit.upper_channel] -= sense;
+                command[unit.lower_channel] += sense;
+            }
+            let torque = |state: &State<ROTORS>| {
+                let dt_s = 1e-6;
+                let next = plant.step(state, &command, &Disturbance::default(), dt_s);
+                (next.rate.z - state.rate.z) / dt_s * INERTIA_KG_M2.z
+            };
+            let first = torque(&hover);
+            let (_, steady) = plant.rotor_wrench(&plant.steady(&hover, &command), &SVector::zeros());
+            let (ratio, formula) = (first / steady.z, rotor.first_over_steady);
+            println!(
+                "{exponent}, throttle {:.3}: {ratio} {formula}",
+                rotor.hover_throttle
+            );
+            assert!(
+                first > 0.0 && (ratio / formula - 1.0).abs() < 0.03,
+                "{exponent}: {ratio} {formula}"
+            );
+            if mass_kg == BODY.mass_kg {
+                assert!(ratio > 1.2 * r, "{exponent}: {ratio}");
+            } else {
+                assert!((ratio / r - 1.0).abs() < 0.02, "{exponent}: {ratio}");
+            }
+            let mut state = hover;
+            for _ in 0..50 {
+                state = plant.step(&state, &command, &Disturbance::default(), 0.001);
+            }
+            let left = (torque(&state) - steady.z) / (first - steady.z);
+            assert!((left - libm::exp(-1.0)).abs() < 0.02, "{exponent}: {left}");
         }
-        let torque = |state: &State<ROTORS>| {
-            let dt = 1e-6;
-            let next = plant.step(state, &command, &Disturbance::default(), dt);
-            (next.rate.z - state.rate.z) / dt * INERTIA_KG_M2.z
-        };
-        let first = torque(&hover);
-        let steady = plant
-            .rotor_wrench(&plant.steady(&hover, &command), &SVector::zeros())
-            .1
-            .z;
-        let ratio = first / steady;
-        let [lead_s, lag_s] = plant.response_s();
-        let formula = lead_s / lag_s;
-        println!("{exponent}: {ratio} {formula}");
-        assert!(
-            first > 0.0 && (ratio / formula - 1.0).abs() < 0.02,
-            "{exponent}: {ratio} {formula}"
-        );
-        assert!((least..most).contains(&ratio), "{exponent}: {ratio}");
-        let mut state = hover;
-        for _ in 0..50 {
-            state = plant.step(&state, &command, &Disturbance::default(), 0.001);
-        }
-        let left = (torque(&state) - steady) / (first - steady);
-        assert!((left - libm::exp(-1.0)).abs() < 0.02, "{exponent}: {left}");
     }
 }
 
@@ -264,4 +271,59 @@ fn the_conventional_mixer_limits_and_says_so() {
             "{throttle}"
         );
     }
+}
+
+/// Torque and speed of a real rotor on a stand, up and down in ramps of 2 s: beyond k w^2 the torque is J dw/dt, and J of the
+/// rises holds for the falls.
+#[test]
+#[ignore = "needs MIXER_BENCH_DATA"]
+fn the_torque_of_a_real_rotor_has_the_reaction_of_its_inertia() {
+    let folder =
+        std::env::var("MIXER_BENCH_DATA").expect("MIXER_BENCH_DATA names the folder of the bench files");
+    let path = std::path::Path::new(&folder).join("aerostack2/multirotor_xNova-MR-steps.csv");
+    let mut file = csv::ReaderBuilder::new().flexible(true).from_path(path).unwrap();
+    let header = file.headers().unwrap().clone();
+    let columns = ["Time (s)", "Torque (N·m)", "Motor Electrical Speed (RPM)"]
+        .map(|name| header.iter().position(|title| title.ends_with(name)).unwrap());
+    let rows = file
+        .records()
+        .map(|row| columns.map(|column| row.as_ref().unwrap()[column].parse().unwrap()));
+    let rows: Vec<[f64; 3]> = rows.collect();
+    // Torque, speed in rad/s and its change, while it turns.
+    let speed = |row: &[f64; 3]| row[2] * std::f64::consts::TAU / 60.0;
+    let turning: Vec<[f64; 3]> = rows
+        .windows(3)
+        .map(|row| {
+            let change = (speed(&row[2]) - speed(&row[0])) / (row[2][0] - row[0][0]);
+            [-row[1][1], speed(&row[1]), change]
+        })
+        .filter(|[_, speed, _]| *speed > 100.0)
+        .collect();
+    // k, J and the stand's offset, by least squares.
+    let fitted = |takes: fn(f64) -> bool| {
+        let (mut normal, mut right) = (Matrix3::zeros(), Vector3::zeros());
+        for [torque, speed, change] in turning.iter().filter(|row| takes(row[2])) {
+            let row = Vector3::new(speed * speed, *change, 1.0);
+            normal += row * row.transpose();
+            right += row * *torque;
+        }
+        normal.lu().solve(&right).unwrap()
+    };
+    // The plateaus belong to both.
+    let [rises, falls] = [fitted(|change| change > -20.0), fitted(|change| change < 20.0)];
+    println!("J {:.3e} in rises, {:.3e} in falls", rises.y, falls.y);
+    assert!(
+        rises.y > 0.0 && (falls.y / rises.y - 1.0).abs() < 0.25,
+        "{rises} {falls}"
+    );
+    let (mut products, mut squares, mut model) = (0.0, 0.0, 0.0);
+    for [torque, speed, change] in turning.iter().filter(|row| row[2] < -50.0) {
+        let (beyond, expected) = (torque - rises.x * speed * speed - rises.z, rises.y * change);
+        products += beyond * expected;
+        squares += beyond * beyond;
+        model += expected * expected;
+    }
+    let (slope, likeness) = (products / model, products / (squares * model).sqrt());
+    println!("falls over the model with J of the rises: slope {slope:.3}, r {likeness:.3}");
+    assert!((slope - 1.0).abs() < 0.25 && likeness > 0.9, "{slope} {likeness}");
 }

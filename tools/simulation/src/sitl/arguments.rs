@@ -75,7 +75,7 @@ pub struct Arguments {
     #[arg(long, value_name = "X,Y,Z", value_parser = inertia)]
     pub inertia: Option<[f64; 3]>,
     /// Time constant of a rotor's speed in hover, s; without it by the inertia
-    #[arg(long, value_name = "SECONDS", value_parser = lag)]
+    #[arg(long, value_name = "SECONDS", value_parser = positive)]
     pub rotor_lag: Option<f64>,
     /// Inertia of a rotor with its motor's bell, kg m2; without it the file's `rotor_inertia_kg_m2`, else estimated from the
     /// largest thrust
@@ -100,9 +100,6 @@ pub struct Arguments {
 
 /// Altitudes to fly at, m.
 const ALTITUDES_M: [f64; 2] = [-1000.0, atmosphere::TOP_M];
-
-/// Time constants of rotors, s: faster ones need finer steps.
-pub const LAGS_S: [f64; 2] = [0.005, 1.0];
 
 /// A rotor that stops.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -137,28 +134,21 @@ fn positive(text: &str) -> Result<f64, String> {
 }
 
 fn altitude(text: &str) -> Result<f64, String> {
-    let (value, [low, high]) = (number(text)?, ALTITUDES_M);
-    (low..=high)
-        .contains(&value)
-        .then_some(value)
-        .ok_or_else(|| format!("must be from {low} to {high} m"))
+    within(text, ALTITUDES_M, "m")
 }
 
 fn density(text: &str) -> Result<f64, String> {
-    let [most, least] = ALTITUDES_M.map(atmosphere::density_at);
+    let [most, least] =
+        ALTITUDES_M.map(|altitude_m| (1e3 * atmosphere::density_at(altitude_m)).round() / 1e3);
+    within(text, [least, most], "kg/m3")
+}
+
+fn within(text: &str, [least, most]: [f64; 2], unit: &str) -> Result<f64, String> {
     let value = number(text)?;
     (least..=most)
         .contains(&value)
         .then_some(value)
-        .ok_or_else(|| format!("must be from {least:.3} to {most:.3} kg/m3"))
-}
-
-fn lag(text: &str) -> Result<f64, String> {
-    let (value, [low, high]) = (number(text)?, LAGS_S);
-    (low..=high)
-        .contains(&value)
-        .then_some(value)
-        .ok_or_else(|| format!("must be from {low} to {high} s"))
+        .ok_or_else(|| format!("must be from {least} to {most} {unit}"))
 }
 
 fn failure(text: &str) -> Result<Failure, String> {

@@ -10,7 +10,7 @@ use nalgebra::{SVector, Vector3};
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::SeedableRng;
 
-use super::arguments::{Arguments, LAGS_S};
+use super::arguments::Arguments;
 use crate::air::normal;
 use crate::battery::Battery;
 use crate::plant::Plant;
@@ -29,6 +29,9 @@ const MASS_AT_UNITS: f64 = 0.25;
 
 /// Least radius of gyration, m: what a single unit, all of it in the middle, is given.
 const LEAST_GYRATION_M: f64 = 0.05;
+
+/// Time constants of rotors, s: faster ones need finer steps.
+const LAGS_S: [f64; 2] = [0.005, 1.0];
 
 /// Power in hover per mass where the file has no `[pair.power]`, W/kg: as the paper's vehicle.
 const HOVER_W_PER_KG: f64 = 80.0;
@@ -52,6 +55,8 @@ pub struct Vehicle {
     pub rotors: usize,
     /// The plant.
     pub plant: Plant<MOST_ROTORS>,
+    /// A rotor in hover at the reference.
+    pub rotor: Flywheel,
     /// Mass, kg.
     pub mass_kg: f64,
     /// The battery.
@@ -99,25 +104,23 @@ impl Vehicle {
                 "{path}: the vehicle weighs {weight:.1} N, which the rotors do not lift: a smaller mass, or other rotors"
             )
         };
-        let rotor_inertia = own
+        let stated = own
             .vehicle
             .as_ref()
             .and_then(|vehicle| vehicle.rotor_inertia_kg_m2);
-        let flywheel = Flywheel::new(&flown, mass_kg, arguments.rotor_inertia.or(rotor_inertia));
-        let rotor_lag_s = match arguments.rotor_lag {
-            Some(lag_s) => lag_s,
-            None => flywheel.ok_or_else(too_heavy)?.lag_s(),
-        };
-        let [least, most] = LAGS_S;
-        if !(least..=most).contains(&rotor_lag_s) {
+        let rotor =
+            Flywheel::new(&flown, mass_kg, arguments.rotor_inertia.or(stated)).ok_or_else(too_heavy)?;
+        let rotor = arguments.rotor_lag.map_or(rotor, |lag_s| rotor.with_lag(lag_s));
+        let (lag_s, [least, most]) = (rotor.lag_s(), LAGS_S);
+        if !(least..=most).contains(&lag_s) {
             return Err(format!(
-                "{path}: with this inertia rotors have a lag of {rotor_lag_s:.4} s, beyond {least} to {most} s: give another --rotor-inertia, or --rotor-lag"
+                "{path}: rotors with a lag of {lag_s:.4} s, beyond {least} to {most} s: give another --rotor-inertia or --rotor-lag"
             ));
         }
         let body = Body {
             mass_kg,
             inertia_kg_m2,
-            rotor_lag_s,
+            rotor_lag_s: lag_s,
         };
         let reference_v = own.voltage.as_ref().map(|voltage| voltage.reference);
         let full_v = arguments.volts.or(reference_v).unwrap_or(ANY_VOLTAGE_V);
@@ -160,6 +163,7 @@ impl Vehicle {
             name: own.name,
             rotors,
             plant,
+            rotor,
             mass_kg,
             battery,
             capacity_ah: arguments.capacity,
@@ -301,7 +305,9 @@ mod tests {
     #[test]
     fn lag_and_inertia_of_a_rotor_are_one_number() {
         let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/simulator/x8.toml");
-        let of = |flags: &[&str]| vehicle(Path::new(file), flags).map(|vehicle| vehicle.plant.response_s());
+        let of = |flags: &[&str]| {
+            vehicle(Path::new(file), flags).map(|vehicle| [vehicle.rotor.lead_s, vehicle.rotor.lag_s()])
+        };
         let [lead_s, lag_s] = of(&["--rotor-inertia", "4e-4"]).unwrap();
         // In hover an exponent of 1.75 at a throttle of 0.8 is some 1.8.
         assert!((lead_s / lag_s - 5.3).abs() < 0.2, "{lead_s} {lag_s}");
