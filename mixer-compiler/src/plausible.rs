@@ -25,7 +25,8 @@ use crate::diagnostic::Diagnostic;
 use crate::model::PairMap;
 
 /// The rules of one part of an airframe, those that may be the reason of others before these.
-const RULES: [fn(&Facts<'_>) -> Vec<Rule>; 18] = [
+const RULES: [fn(&Facts<'_>) -> Vec<Rule>; 19] = [
+    pair::borrowed,
     pair::units,
     rotors::order,
     pair::thrust,

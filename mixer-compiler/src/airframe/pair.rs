@@ -36,6 +36,8 @@ keys! { TABLE = "[pair]":
         "Electrical power, for what `check` and the report say of least power.";
     UNCERTAINTY "uncertainty" = "", Kind::Table(&uncertainty::TABLE),
         "How far the model of the pair may be from the pair.";
+    BORROWED_FROM "borrowed_from" = "\"the X8 of Chebbi et al. 2020\"", Kind::Text,
+        "The vehicle whose pair this is, where it stands in for one that was not measured yet: a warning (MIX309), the verdict and saved files say so.";
     BENCH_OPTIONS "bench_options" = "[\"--swap\", \"--unit\", \"thrust=gf\"]", Kind::Texts,
         "Options of `cargo mixer identify` that the bench files needed to be read: `report --bench` reads them so, too.";
 }
@@ -47,6 +49,14 @@ pub enum Spin {
     Cw,
     /// Counter-clockwise.
     Ccw,
+}
+
+impl Pair {
+    /// Whose pair it is, where it is not the airframe's own, as a line of saved files says it.
+    pub fn borrowed(&self) -> Option<String> {
+        let from = &self.borrowed_from;
+        (!from.is_empty()).then(|| format!("the pair is that of {from}, not of this vehicle"))
+    }
 }
 
 impl Spin {
@@ -101,6 +111,9 @@ pub struct Pair {
     pub power: Option<Power>,
     /// Error of the model; `None` where the file has no `[pair.uncertainty]`.
     pub uncertainty: Option<Uncertainty>,
+    /// The vehicle whose pair stands in for one that was not measured yet; empty where it is the
+    /// airframe's own.
+    pub borrowed_from: String,
     /// Options of `cargo mixer identify` that the bench files needed to be read; empty where the file
     /// has none.
     pub bench_options: Vec<String>,
@@ -116,6 +129,7 @@ pub(super) fn read(table: &mut Fields<'_, '_>, throttle: Option<&Throttle>) -> (
     let upper_out = table.table(&UPPER_OUT, |table| rotor_alone::read(table, 1.0, throttle));
     let power = table.table(&POWER, |table| power::read(table, throttle));
     let uncertainty = table.table(&UNCERTAINTY, uncertainty::read);
+    let borrowed_from = table.read::<String>(&BORROWED_FROM);
     let bench_options = table.read::<Vec<Spanned<String>>>(&BENCH_OPTIONS);
     let bench_options = bench_options.map_or(Vec::new(), Spanned::into_inner);
     let pair = || {
@@ -129,6 +143,7 @@ pub(super) fn read(table: &mut Fields<'_, '_>, throttle: Option<&Throttle>) -> (
             upper_out: upper_out.flatten(),
             power: power.flatten(),
             uncertainty: uncertainty.flatten(),
+            borrowed_from: borrowed_from.map(Spanned::into_inner).unwrap_or_default(),
             bench_options: bench_options.into_iter().map(Spanned::into_inner).collect(),
         })
     };

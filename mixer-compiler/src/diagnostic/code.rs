@@ -138,6 +138,8 @@ catalogue! {
     SpinMin = 307,
     /// A map whose growth with the throttles, or whose rotors' hold on one another, no pair has.
     PairShape = 308,
+    /// A pair that is another vehicle's and stands in for the airframe's own.
+    BorrowedPair = 309,
     /// An arm far longer than the thrust makes plausible.
     LongArm = 310,
     /// An angle that looks like radians.

@@ -186,6 +186,17 @@ pub(super) fn shape(facts: &Facts<'_>) -> Vec<Rule> {
     ]
 }
 
+/// A pair that stands in.
+pub(super) fn borrowed(facts: &Facts<'_>) -> Vec<Rule> {
+    let told = facts.airframe.pair.borrowed();
+    let rule = Rule::holds(Code::BorrowedPair, "pair.borrowed_from", told.is_none());
+    vec![rule.says(
+        format!("{}: its thrust, torque and hover are not yours", told.unwrap_or_default()),
+        "stands in",
+        "replace [pair] by what `cargo mixer identify` makes of your bench file, or `cargo mixer predict` of a data sheet",
+    )]
+}
+
 /// Thrust over power tells the unit of the power; its growth and its two rotors, coefficients that
 /// are off.
 pub(super) fn power(facts: &Facts<'_>) -> Vec<Rule> {

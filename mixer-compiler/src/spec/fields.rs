@@ -266,7 +266,7 @@ impl<'a, 'f> Fields<'a, 'f> {
         let (message, help) = match key.kind {
             Kind::Table(shape) | Kind::Tables(shape) => (
                 format!("the table `{example}` is missing"),
-                format!("add the table `{example}` with {}", joined(shape.names())),
+                format!("add the table `{example}` with {}", joined(shape.required())),
             ),
             _ => (
                 format!("`{path}` is missing"),

@@ -182,6 +182,13 @@ impl Shape {
         self.keys.iter().map(|key| key.name)
     }
 
+    /// The names of those that it must have; of all where it must have none.
+    pub(crate) fn required(&self) -> impl Iterator<Item = &'static str> + use<> {
+        let none = !self.keys.iter().any(|key| key.required);
+        let keys = self.keys.iter().filter(move |key| none || key.required);
+        keys.map(|key| key.name)
+    }
+
     /// This table, and those in it.
     pub fn all(&'static self) -> Vec<&'static Shape> {
         let inner = self.keys.iter().flat_map(|key| match key.kind {

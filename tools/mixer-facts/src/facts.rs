@@ -348,15 +348,23 @@ fn model(list: &mut List, compiled: &Compiled) {
         let (f, q) = (uncertainty.thrust_percent, uncertainty.torque_percent);
         (uncertainty.source(), f, q)
     });
-    let words = or_nothing(uncertainty, |(source, f, q)| {
+    let of_uncertainty = or_nothing(uncertainty, |(source, f, q)| {
         format!(
             ", {source}: +- {f} % of the largest thrust, {q} % of the largest torque (one standard deviation)"
         )
     });
+    let borrowed = &pair.borrowed_from;
+    let is_borrowed = !borrowed.is_empty();
+    let of_whom = match is_borrowed {
+        true => format!(", of {borrowed}, not yours"),
+        false => String::new(),
+    };
+    let words = of_whom + &of_uncertainty;
     let uncertainty = uncertainty
         .map(|(source, f, q)| json!({ "source": source, "thrust_percent": f, "torque_percent": q }));
     list.say("pair", pair.basis.name(), "", words)
-        .in_verdict_if(uncertainty.is_some())
+        .in_verdict_if(uncertainty.is_some() || is_borrowed)
+        .json("borrowed_from", is_borrowed.then_some(borrowed))
         .json("uncertainty", uncertainty);
     let border = compiled.pair.border(SAMPLES).into_iter();
     let efforts: Vec<[f64; 2]> = border.map(|at| compiled.pair.efforts(at)).collect();

@@ -190,6 +190,8 @@ fn header(compiled: &Compiled, file: &str, options: &Options, notes: &[String]) 
         env!("CARGO_PKG_VERSION"),
         file,
     );
+    let borrowed = compiled.airframe.pair.borrowed();
+    let beware = borrowed.map(|told| format!("beware: {told}"));
     if !options.own {
         let (what, unit) = match options.stack {
             Stack::Px4 => ("A setpoint of 1", compiled.scale()),
@@ -202,7 +204,7 @@ fn header(compiled: &Compiled, file: &str, options: &Options, notes: &[String]) 
             "# {what} is {roll:.4} N m roll, {pitch:.4} N m pitch, {yaw:.4} N m yaw, {thrust:.3} N.",
         );
     }
-    for note in notes {
+    for note in beware.iter().chain(notes) {
         for (k, line) in wrapped(&format!("{note}."), COMMENT).iter().enumerate() {
             // Writing to a String cannot fail.
             let _ = writeln!(head, "# {} {line}", if k == 0 { "*" } else { " " });

@@ -38,9 +38,11 @@ impl Header<'_> {
         } = self.airframe;
         let airframe = &compiled.airframe;
         let prefix = self.airframe.prefix();
+        let borrowed = airframe.pair.borrowed();
+        let borrowed = borrowed.map_or_else(String::new, |told| format!("; beware: {told}"));
         let title = match airframe.description.trim_end_matches('.') {
-            "" => airframe.name.clone(),
-            description => format!("{}: {description}", airframe.name),
+            "" => format!("{}{borrowed}", airframe.name),
+            description => format!("{}: {description}{borrowed}", airframe.name),
         };
         let voltage = match &airframe.voltage {
             Some(voltage) => format!(
