@@ -2,7 +2,9 @@
 // scrolls both.
 "use strict";
 function element(name, properties = {}, ...children) {
-  const made = Object.assign(document.createElement(name), properties);
+  const made = document.createElement(name);
+  // Browsers of 2023 have no properties for the attributes of ARIA.
+  for (const [key, value] of Object.entries(properties)) key.startsWith("aria-") ? made.setAttribute(key, value) : made[key] = value;
   made.append(...children);
   return made;
 }
@@ -10,10 +12,9 @@ function element(name, properties = {}, ...children) {
 class Editor {
   constructor(box, changed) {
     this.box = box;
-    this.gutter = element("pre", { className: "gutter", ariaHidden: "true" });
-    this.area = element("textarea", { spellcheck: false, autocapitalize: "off", autocomplete: "off", wrap: "off", ariaLabel: "Text of the file" });
-    this.area.setAttribute("aria-describedby", "faults");
-    this.layer = element("div", { className: "marks", ariaHidden: "true" });
+    this.gutter = element("pre", { className: "gutter", "aria-hidden": "true" });
+    this.area = element("textarea", { spellcheck: false, autocapitalize: "off", autocomplete: "off", wrap: "off", "aria-label": "Text of the file", "aria-describedby": "faults" });
+    this.layer = element("div", { className: "marks", "aria-hidden": "true" });
     box.append(this.gutter, element("div", { className: "sheet" }, this.area, this.layer));
     this.area.addEventListener("input", () => { this.measure(); changed(this.area.value); });
   }
@@ -35,7 +36,8 @@ class Editor {
   // Marks are { line, column, severity, message }; line and column from 1.
   mark(marks) {
     const lines = this.area.value.split("\n");
-    const byLine = Map.groupBy(marks.filter(({ line }) => line && line <= lines.length), ({ line }) => line);
+    const byLine = new Map();
+    for (const mark of marks) if (mark.line && mark.line <= lines.length) byLine.set(mark.line, [...byLine.get(mark.line) ?? [], mark]);
     this.layer.replaceChildren(...[...byLine].flatMap(([line, marks]) => {
       const [{ severity, column }] = marks, text = lines[line - 1], from = (column ?? 1) - 1;
       const word = column ? text.slice(from).match(/^\S*/)[0].length : text.length;

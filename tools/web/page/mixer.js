@@ -16,16 +16,16 @@ const short = (x) => (Math.abs(x) < 1e-9 ? "0" : Number(x.toPrecision(4)).toStri
 // What people write behind a number, in the units that the labels of fields have.
 const UNITS = {
   m: { m: 1, cm: 0.01, mm: 0.001, in: 0.0254, inch: 0.0254, '"': 0.0254 }, kg: { kg: 1, g: 0.001, lb: 0.45359237 },
-  V: { V: 1, mV: 0.001 }, S: { S: 1, s: 1 }, N: { N: 1 }, "N m": { "N m": 1, Nm: 1 }, "N m/N": { "N m/N": 1, "Nm/N": 1, m: 1 },
+  V: { V: 1, mV: 0.001 }, "cells in series": { S: 1, s: 1, cells: 1 }, N: { N: 1 }, g: { g: 1, gf: 1, kg: 1000, N: 1000 / 9.80665 }, "N m": { "N m": 1, Nm: 1 }, "N m/N": { "N m/N": 1, "Nm/N": 1, m: 1 },
   "kg/m\u00b3": { "kg/m\u00b3": 1, "kg/m3": 1 },
 };
 
 // The number that was typed into a field with a label as `Arm, m`: `4,5` and `450 mm` are read. Of `1,500` nobody knows
 // which it is.
 function number(label, typed) {
-  const [name, unit] = label.split(", ");
+  const [, name, unit] = label.match(/^(.*), (.*)$/);
   const [, digits, behind] = typed.trim().match(/^([+-]?(?:\d+(?:[.,]\d*)?|[.,]\d+)(?:e[+-]?\d+)?)\s*(.*)$/i) ?? [];
-  const by = behind ? UNITS[unit][behind] : 1;
+  const by = behind ? UNITS[unit]?.[behind] : 1;
   if (digits === undefined || by === undefined) throw new Refused(`${name}: ${typed} is no number in ${unit}, as 4.5 or 4,5 is`);
   if (/^[+-]?[1-9]\d{0,2},\d{3}$/.test(digits)) throw new Refused(`${name}: ${typed} may mean two numbers; write ${digits.replace(",", ".")} or ${digits.replace(",", "")}`);
   const plain = digits.replace(",", ".");
@@ -33,37 +33,70 @@ function number(label, typed) {
 }
 const labelOf = (field) => field.labels[0].firstChild.textContent.trim();
 
-// Keys of the airframe file that have a field, each with its table.
-const KEYS = { mass_kg: "vehicle", airmode: "allocation", yaw_reserve_nm: "allocation", power_bias_nm_per_n: "allocation" };
+// The frame seen from above, with a ring for every rotor as long as its throttle.
+class FromAbove {
+  constructor(svg) {
+    this.svg = svg;
+  }
 
-class Hand {
-  // `moved` is told of every new position, `edited` of a key and its new value, `wrong` of a number that is none.
-  constructor(ask, moved, edited, wrong) {
-    Object.assign(this, { ask, moved, wrong, busy: false, stale: false, frames: 0 });
-    document.getElementById("hover").addEventListener("click", () => this.put({ wrench: [0, 0, 0, this.scene.hover_n] }));
-    for (const key of Object.keys(KEYS)) {
-      const field = document.getElementById(key);
-      field.addEventListener("change", () => {
-        if (key === "airmode") edited(key, JSON.stringify(field.value));
-        else this.typed(labelOf(field), field.value, (value) => edited(key, value));
+  // What does not move: `units` are those of Desk.scene.
+  frame(units) {
+    const { svg } = this;
+    const far = Math.max(1e-9, ...units.map(({ place_m }) => Math.hypot(...place_m)));
+    const place = ({ place_m: [x, y] }) => [150 + 98 * y / far, 150 - 98 * x / far];
+    const apart = units.flatMap((a, k) => units.slice(k + 1).map((b) => Math.hypot(place(a)[0] - place(b)[0], place(a)[1] - place(b)[1])));
+    const radius = Math.min(52, 0.46 * Math.min(...apart, 300));
+    svg.setAttribute("viewBox", "0 0 300 300");
+    svg.replaceChildren(...units.map((unit) => drawn("path", { class: "arm", d: `M150 150L${place(unit)}` })),
+      drawn("path", { class: "forward", d: "M150 128v-26m-7 9l7 -9l7 9" }));
+    this.rings = [];
+    for (const unit of units) {
+      const [x, y] = place(unit), size = Math.min(13, radius / (units.length > 4 ? 4.4 : 3.6));
+      svg.append(drawn("circle", { class: "disk", cx: x, cy: y, r: radius }));
+      unit.channels.forEach((channel, layer) => {
+        const at = { cx: x, cy: y, r: radius - 16 + 10 * layer, pathLength: 1 };
+        const clockwise = (unit.upper_spin === "cw") === (layer === 0);
+        const turn = `rotate(-90 ${x} ${y})${clockwise ? "" : ` matrix(1 0 0 -1 0 ${2 * y})`}`;
+        const ring = drawn("circle", { ...at, class: layer ? "ring lower" : "ring", transform: turn });
+        const text = drawn("text", { class: "middle", x, y: y + (layer ? 1.2 : -0.3) * size, "font-size": size });
+        svg.append(drawn("circle", { ...at, class: "track" }), ring, text);
+        this.rings[channel] = { ring, text, spin: clockwise ? "\u21bb" : "\u21ba" };
       });
     }
   }
 
-  // Uses the number of a field; empty where the field is.
+  // Throttles by output; those of `failed` are out.
+  turn(throttles, failed) {
+    throttles.forEach((throttle, channel) => {
+      const { ring, text, spin } = this.rings[channel], out = failed.includes(channel);
+      ring.classList.toggle("out", out);
+      ring.setAttribute("stroke-dasharray", out ? ".02 .02" : `${throttle} 1`);
+      text.textContent = out ? `${channel} out` : `${channel}${spin} ${Math.round(100 * throttle)}`;
+    });
+  }
+}
+
+class Hand {
+  // `moved` is told of every new position.
+  constructor(ask, moved) {
+    Object.assign(this, { ask, moved, busy: false, stale: false, frames: 0, top: new FromAbove(document.getElementById("top")) });
+    document.getElementById("hover").addEventListener("click", () => this.put({ wrench: [0, 0, 0, this.scene.hover_n] }));
+  }
+
+  // Uses the number that was typed into a field; what is none is said at the flags.
   typed(label, text, use) {
     try {
-      use(text.trim() && number(label, text));
+      if (text.trim()) use(number(label, text));
     } catch ({ message }) {
-      this.wrong(message, true);
+      this.flag(message, true);
     }
   }
 
   // The airframe of a name; `at` is the position { name, wrench, volts, density, failed } of the one before, or null. One of
   // another name begins in hover.
-  async show(name, before) {
+  show(scene, name, before) {
     const at = before?.name === name ? before : null;
-    this.scene = await this.ask("scene");
+    this.scene = { ...scene };
     this.scene.largest = this.scene.largest.map((x) => Number(x.toPrecision(4)));
     const { largest, hover_n, volts, density, units } = this.scene;
     const within = (x, ends) => (ends ? Math.min(ends[2], Math.max(ends[0], x ?? ends[1])) : 0);
@@ -86,7 +119,7 @@ class Hand {
     const one = (id, label, low, high, get, put) => {
       const step = 10 ** Math.floor(Math.log10((high - low) / 400));
       const range = element("input", { type: "range", id, min: low, max: high, step: "any", value: get() });
-      const field = element("input", { inputMode: "decimal", id: `${id}-number`, value: get(), ariaLabel: label });
+      const field = element("input", { inputMode: "decimal", id: `${id}-number`, value: get(), "aria-label": label });
       range.addEventListener("input", () => put(Math.min(high, Math.max(low, Number((Math.round(range.value / step) * step).toPrecision(12))))));
       field.addEventListener("change", () => this.typed(label, field.value, (value) => put(Number(value))));
       range.addEventListener("keydown", (event) => {
@@ -100,12 +133,11 @@ class Hand {
     };
     this.shown = [];
     const axis = ([name, unit], k) => one(name, `${name}, ${unit}`, k === 3 ? 0 : -largest[k], largest[k],
-      () => this.at.wrench[k], (x) => this.put({ wrench: this.at.wrench.with(k, x) }));
+      () => this.at.wrench[k], (x) => this.put({ wrench: this.at.wrench.map((of, axis) => (axis === k ? x : of)) }));
     const condition = (key, label, ends) => one(key, label, ends[0], ends[2], () => this.at[key], (x) => this.put({ [key]: x }));
     document.getElementById("sliders").replaceChildren(
       ...AXES.map((name, k) => largest[k] > 0 && axis(name, k)).filter(Boolean),
       ...[volts && condition("volts", "voltage, V", volts), density && condition("density", "density, kg/m\u00b3", density)].filter(Boolean));
-    for (const key of Object.keys(KEYS)) document.getElementById(key).value = this.scene[key] ?? "";
   }
 
   // Every rotor as { channel, layer (0 upper, 1 lower), unit }, by output.
@@ -133,29 +165,8 @@ class Hand {
 
   // What does not move: the frame from above and the axes of the attainable set.
   frame() {
-    const { units, box_n_nm: [[low_n, high_n], [low_nm, high_nm]] } = this.scene;
-    const top = document.getElementById("top"), set = document.getElementById("set");
-    const far = Math.max(1e-9, ...units.map(({ place_m }) => Math.hypot(...place_m)));
-    const place = ({ place_m: [x, y] }) => [150 + 98 * y / far, 150 - 98 * x / far];
-    const apart = units.flatMap((a, k) => units.slice(k + 1).map((b) => Math.hypot(place(a)[0] - place(b)[0], place(a)[1] - place(b)[1])));
-    const radius = Math.min(52, 0.46 * Math.min(...apart, 300));
-    top.setAttribute("viewBox", "0 0 300 300");
-    top.replaceChildren(...units.map((unit) => drawn("path", { class: "arm", d: `M150 150L${place(unit)}` })),
-      drawn("path", { class: "forward", d: "M150 128v-26m-7 9l7 -9l7 9" }));
-    this.rings = [];
-    for (const unit of units) {
-      const [x, y] = place(unit), size = Math.min(13, radius / (units.length > 4 ? 4.4 : 3.6));
-      top.append(drawn("circle", { class: "disk", cx: x, cy: y, r: radius }));
-      unit.channels.forEach((channel, layer) => {
-        const at = { cx: x, cy: y, r: radius - 16 + 10 * layer, pathLength: 1 };
-        const clockwise = (unit.upper_spin === "cw") === (layer === 0);
-        const turn = `rotate(-90 ${x} ${y})${clockwise ? "" : ` matrix(1 0 0 -1 0 ${2 * y})`}`;
-        const ring = drawn("circle", { ...at, class: layer ? "ring lower" : "ring", transform: turn });
-        const text = drawn("text", { class: "middle", x, y: y + (layer ? 1.2 : -0.3) * size, "font-size": size });
-        top.append(drawn("circle", { ...at, class: "track" }), ring, text);
-        this.rings[channel] = { ring, text, spin: clockwise ? "\u21bb" : "\u21ba" };
-      });
-    }
+    const { units, box_n_nm: [[low_n, high_n], [low_nm, high_nm]] } = this.scene, set = document.getElementById("set");
+    this.top.frame(units);
     set.setAttribute("viewBox", "0 0 320 230");
     this.toX = (n) => 56 + 250 * (n - low_n) / (high_n - low_n || 1);
     this.toY = (nm) => 190 - 176 * (nm - low_nm) / (high_nm - low_nm || 1);
@@ -211,12 +222,7 @@ class Hand {
       row.querySelectorAll("td").forEach((cell, column) => { cell.textContent = rows[k][column]; }));
     fill("throttles", throttles.map((throttle, channel) => [exact(throttle), exact(isolated.throttles[channel])]));
     fill("wrench", AXES.map((_, k) => [exact(this.at.wrench[k]), exact(achieved[k]), short(isolated.given[k])]));
-    throttles.forEach((throttle, channel) => {
-      const { ring, text, spin } = this.rings[channel], out = this.at.failed.includes(channel);
-      ring.classList.toggle("out", out);
-      ring.setAttribute("stroke-dasharray", out ? ".02 .02" : `${throttle} 1`);
-      text.textContent = out ? `${channel} out` : `${channel}${spin} ${Math.round(100 * throttle)}`;
-    });
+    this.top.turn(throttles, this.at.failed);
     const corner = ([n, nm]) => `${this.toX(byThrust * n).toFixed(1)} ${this.toY(byTorque * nm).toFixed(1)}`;
     this.border.setAttribute("d", `M${this.scene.border.map(corner).join("L")}Z`);
     [efforts, isolated.efforts].forEach((of, kind) => of.forEach(([n, nm], unit) => {

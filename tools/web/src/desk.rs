@@ -3,8 +3,11 @@
 use cargo_mixer::bench_args::pwm_range;
 use cargo_mixer::commands::report::{bench_points, sha256};
 use isolated_rotors::IsolatedTables;
+use mixer_compiler::airframe::Axis;
 use mixer_compiler::diagnostic::Record;
+use mixer_compiler::hover::HoverAt;
 use mixer_compiler::{Compiled, Source};
+use mixer_facts::hover::Hover;
 use mixer_files::golden;
 use mixer_files::params::Stack;
 use mixer_files::params::{Options, params};
@@ -35,6 +38,72 @@ pub struct Told {
     pub verdict: String,
     /// The airframe's name, likewise.
     pub name: String,
+    /// What a builder looks at first, likewise.
+    pub numbers: Option<Numbers>,
+}
+
+/// Whether a vehicle flies well, in few numbers at the reference voltage. Those of hover are `None` without a mass,
+/// and where the weight is not carried.
+#[derive(Debug, Serialize)]
+pub struct Numbers {
+    /// Mass, kg.
+    pub mass_kg: Option<f64>,
+    /// Voltage, V; `None` where it has no effect.
+    pub volts: Option<f64>,
+    /// Least and greatest throttle in hover, of the upper and of the lower rotors.
+    pub hover: Option<[[f64; 2]; 2]>,
+    /// Throttles at which this airframe gives [`USUAL`] of its largest bare thrust.
+    pub usual_hover: Option<[f64; 2]>,
+    /// Largest bare thrust over weight.
+    pub over_weight: Option<f64>,
+    /// Yaw left in hover in its weaker sense, N m.
+    pub yaw_nm: Option<f64>,
+    /// The same over the roll that is left.
+    pub yaw_over_roll: Option<f64>,
+}
+
+/// Shares of the largest bare thrust at which frames hover, as the warning MIX342 has them.
+const USUAL: [f64; 2] = [0.3, 0.6];
+
+impl Numbers {
+    fn new(compiled: &Compiled) -> Self {
+        let hover = Hover::new(compiled);
+        let volts = compiled
+            .airframe
+            .voltage
+            .as_ref()
+            .map(|voltage| voltage.reference);
+        let ceiling = f64::from(compiled.thrust_range_n[1]);
+        let throttles = |hover: &HoverAt| hover.layers().map(|layers| layers.map(|(ends, _)| ends));
+        let usual = USUAL.map(|share| throttles(&HoverAt::new(compiled, share * ceiling, volts)));
+        let usual = match usual {
+            [
+                Some([[upper, _], [lower, _]]),
+                Some([[_, upper_most], [_, lower_most]]),
+            ] => Some([upper.min(lower), upper_most.max(lower_most)]),
+            _ => None,
+        };
+        let at = hover.as_ref().and_then(|hover| hover.at.last());
+        let left = |axis: Axis| {
+            let mut margins = at?.margins.iter();
+            let margin = margins.find(|margin| margin.axis == axis.name())?;
+            let [least, most] = margin.torque_nm;
+            Some(most.min(-least))
+        };
+        let (roll_nm, yaw_nm) = (left(Axis::Roll), left(Axis::Yaw));
+        Numbers {
+            mass_kg: hover.as_ref().map(|hover| hover.mass_kg),
+            volts,
+            hover: at.and_then(throttles),
+            usual_hover: usual,
+            over_weight: hover.as_ref().map(|hover| hover.thrust_over_weight),
+            yaw_nm,
+            yaw_over_roll: yaw_nm
+                .zip(roll_nm)
+                .map(|(yaw, roll)| yaw / roll)
+                .filter(|share| share.is_finite()),
+        }
+    }
 }
 
 /// Compiles an airframe file.
@@ -46,6 +115,7 @@ pub fn check(name: &str, text: &str) -> (Option<Checked>, Told) {
                 warnings: checked.warnings.records(),
                 verdict: checked.verdict(),
                 name: checked.compiled.airframe.name.clone(),
+                numbers: Some(Numbers::new(&checked.compiled)),
             };
             let isolated = IsolatedTables::new(&checked.compiled);
             let compiled = checked.compiled;
@@ -57,6 +127,7 @@ pub fn check(name: &str, text: &str) -> (Option<Checked>, Told) {
                 warnings: Vec::new(),
                 verdict: String::new(),
                 name: String::new(),
+                numbers: None,
             };
             (None, told)
         }

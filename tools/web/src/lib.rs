@@ -1,7 +1,7 @@
 //! What the page of `tools/web/page` calls: files and words of the command line in, JSON out.
 //!
 //! ```text
-//! files dropped -> kind::kind      what each one is
+//! files dropped -> make::kind      what each one is
 //!               -> make::make      `identify`, `predict`, `import` or `new`, by their own arguments
 //! airframe file -> desk::check     faults and warnings by line, verdict
 //!               -> desk::report    the report of `cargo mixer report`
@@ -16,7 +16,6 @@ use wasm_bindgen::prelude::wasm_bindgen;
 pub mod desk;
 pub mod edit;
 pub mod hand;
-pub mod kind;
 pub mod make;
 
 use desk::Checked;
@@ -38,9 +37,9 @@ impl Desk {
         Desk::default()
     }
 
-    /// What a dropped file is: see [`kind::kind`].
-    pub fn kind(&self, name: &str, text: &str, options: Vec<String>) -> String {
-        json(&kind::kind(name, text, &options))
+    /// What a file is, by its bytes: see [`make::kind`].
+    pub fn kind(&self, name: &str, bytes: &[u8], options: Vec<String>) -> String {
+        json(&make::kind(name, bytes, &options))
     }
 
     /// Runs a command that makes a pair or an airframe: see [`make::make`]. `names` and `texts` are the

@@ -9,10 +9,11 @@ use cargo_mixer::commands::import::ImportArgs;
 use cargo_mixer::commands::new::NewArgs;
 use cargo_mixer::commands::predict::PredictArgs;
 use cargo_mixer::place::tables_or_airframe;
-use clap::{CommandFactory as _, Parser};
+use clap::{CommandFactory as _, Parser, ValueHint};
 use mixer_compiler::Source;
 use mixer_compiler::diagnostic::printable_lines;
 use mixer_files::import;
+use mixer_files::kind::File;
 use mixer_identify::bench::read;
 use mixer_identify::identified::Settings;
 use mixer_identify::refusal::Refusal;
@@ -70,10 +71,10 @@ pub struct Made {
     /// What is said of it.
     pub report: String,
     /// What its user has to know.
-    pub notes: Vec<String>,
+    pub notes: Vec<Fault>,
 }
 
-/// Why nothing was made.
+/// What is to be known of files: why nothing was made of them, or what is doubtful in them.
 #[derive(Debug, Serialize)]
 pub struct Fault {
     /// The file; empty where none is to blame.
@@ -84,6 +85,8 @@ pub struct Fault {
     pub message: String,
     /// What would mend it.
     pub help: String,
+    /// Options of the command line that message and help name whole, each as the words of a line.
+    pub mends: Vec<String>,
 }
 
 impl Fault {
@@ -93,7 +96,14 @@ impl Fault {
             line: None,
             message: message.into(),
             help: String::new(),
+            mends: Vec::new(),
         }
+    }
+
+    /// The same with the options of a command that it names.
+    fn mended_by(mut self, command: &str) -> Self {
+        self.mends = mends(command, &format!("{} {}", self.message, self.help));
+        self
     }
 
     /// The first line of what clap says; the others are about a command line.
@@ -113,6 +123,7 @@ impl Fault {
             line,
             message: refusal.reason.clone(),
             help: refusal.needed.clone(),
+            mends: Vec::new(),
         }
     }
 }
@@ -123,13 +134,17 @@ impl Fault {
 /// # Errors
 /// Words that are none of the command's, files that cannot serve.
 pub fn make(words: &[String], files: &Files) -> Result<Made, Vec<Fault>> {
+    let name = words.first().map_or("", String::as_str);
+    let refused = |refusals: Vec<Refusal>| {
+        let faults = refusals.iter().map(|refusal| Fault::of(refusal).mended_by(name));
+        faults.collect::<Vec<_>>()
+    };
     let words = ["cargo mixer"]
         .into_iter()
         .chain(words.iter().map(String::as_str));
     let command = Make::try_parse_from(words).map_err(|error| vec![Fault::usage(&error)])?;
     let reader = |path: &Path| files.text(path);
     let general = |message: String| vec![Fault::general(message)];
-    let refused = |refusals: Vec<Refusal>| refusals.iter().map(Fault::of).collect::<Vec<_>>();
     match command {
         Make::Identify(args) => {
             let (answer, notes) = args.answer(&reader).map_err(|none| match none {
@@ -137,12 +152,12 @@ pub fn make(words: &[String], files: &Files) -> Result<Made, Vec<Fault>> {
                 NoAnswer::Refused(refusals) => refused(refusals),
             })?;
             let text = tables_or_airframe(&answer, args.place.frame.as_ref(), args.place.output.as_deref());
-            Ok(answered(text.map_err(general)?, &answer, notes))
+            Ok(answered(name, text.map_err(general)?, &answer, notes))
         }
         Make::Predict(args) => {
             let answer = args.answer(&reader).map_err(refused)?;
             let text = tables_or_airframe(&answer, args.place.frame.as_ref(), args.place.output.as_deref());
-            Ok(answered(text.map_err(general)?, &answer, Vec::new()))
+            Ok(answered(name, text.map_err(general)?, &answer, Vec::new()))
         }
         Make::Import(args) => {
             let source = |path| files.source(path).map_err(|fault| vec![fault]);
@@ -152,7 +167,7 @@ pub fn make(words: &[String], files: &Files) -> Result<Made, Vec<Fault>> {
             Ok(Made {
                 toml: made.text,
                 report: String::new(),
-                notes: made.notes,
+                notes: made.notes.into_iter().map(Fault::general).collect(),
             })
         }
         Make::New(args) => {
@@ -169,17 +184,76 @@ pub fn make(words: &[String], files: &Files) -> Result<Made, Vec<Fault>> {
     }
 }
 
-fn answered<T>(toml: String, answer: &Answer<T>, notes: Vec<String>) -> Made {
+/// `notes` are of rows that were passed over; the answer has its own warnings.
+fn answered<T>(command: &str, toml: String, answer: &Answer<T>, notes: Vec<String>) -> Made {
+    let json: serde_json::Value = serde_json::from_str(&answer.json).unwrap_or_default();
+    let warnings = json["warnings"].as_array().into_iter().flatten();
+    let warnings = warnings.filter_map(|warning| warning.as_str().map(str::to_owned));
+    let notes = notes.into_iter().chain(warnings);
     Made {
         toml,
         report: printable_lines(&answer.report),
-        notes,
+        notes: notes
+            .map(|note| Fault::general(note).mended_by(command))
+            .collect(),
     }
+}
+
+/// The options in a text that `identify` or `predict` take as they stand there, as `--tare` and
+/// `--unit thrust=gf`: without those that name a file, and without placeholders as `--run-voltage VOLT`.
+fn mends(command: &str, text: &str) -> Vec<String> {
+    let all = Make::command();
+    let Some(of) = all.find_subcommand(command) else {
+        return Vec::new();
+    };
+    let plain = |word: &str| {
+        let word = word.trim_matches(|c: char| "`\"'(,;:.)".contains(c));
+        word.to_owned()
+    };
+    let words: Vec<String> = text.split_whitespace().map(plain).collect();
+    let next = words.iter().skip(1).map(Some).chain([None]);
+    let mut found: Vec<String> = Vec::new();
+    for (word, value) in words.iter().zip(next) {
+        let name = word.strip_prefix("--").unwrap_or_default();
+        let Some(option) = of.get_arguments().find(|option| option.get_long() == Some(name)) else {
+            continue;
+        };
+        let line = match (option.get_action().takes_values(), value) {
+            (false, _) => word.clone(),
+            (true, Some(value)) if is_value(value) && option.get_value_hint() != ValueHint::AnyPath => {
+                format!("{word} {value}")
+            }
+            _ => continue,
+        };
+        let taken = Make::try_parse_from(
+            ["cargo mixer", command, "FILE"]
+                .into_iter()
+                .chain(line.split(' ')),
+        );
+        if taken.is_ok() && !found.contains(&line) {
+            found.push(line);
+        }
+    }
+    found
+}
+
+/// Whether a word is a value and no placeholder for one.
+fn is_value(word: &str) -> bool {
+    !word.ends_with('=') && !word.chars().any(char::is_uppercase)
+}
+
+/// Tells what a file is; a bench file is read with these options of the command line.
+///
+/// # Errors
+/// A file that is of no use here: what it is.
+pub fn kind(name: &str, bytes: &[u8], options: &[String]) -> Result<File, String> {
+    let [identify, predict] = ["identify", "predict"].map(|command| settings(command, options));
+    mixer_files::kind::read(name, bytes, &identify, &predict)
 }
 
 /// How a command reads a bench file with these options; with options that are none of its own, as
 /// without.
-pub(crate) fn settings(command: &str, options: &[String]) -> Settings {
+fn settings(command: &str, options: &[String]) -> Settings {
     let words = ["cargo mixer", command, "FILE"].into_iter();
     let given = Make::try_parse_from(words.clone().chain(options.iter().map(String::as_str)));
     match given.or_else(|_| Make::try_parse_from(words)) {

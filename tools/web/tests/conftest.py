@@ -1,12 +1,13 @@
 """The page in headless Chromium, made by `cargo page`, and the command line beside it, which is the judge.
 
 Every visit is held to one rule: no console message, no error, nothing that the content policy refuses, and no
-request but for the page itself.
+request but for the page itself. It has no builtin of JavaScript that the oldest browsers of docs/page.md lack.
 """
 
 import functools
 import http.server
 import os
+import re
 import shutil
 import subprocess
 import threading
@@ -14,11 +15,15 @@ import time
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import TimeoutError, sync_playwright
+from playwright.sync_api import expect, sync_playwright
 
 ROOT = Path(__file__).parents[3]
 TARGET = ROOT / os.environ.get("CARGO_TARGET_DIR", "target")
 PROGRAM = Path(os.environ.get("MIXER_COMMAND", TARGET / "debug/cargo-mixer"))
+
+# Seconds until what was waited for is taken for missing: a machine may be busy with much else.
+PATIENCE = 120
+expect.set_options(timeout=PATIENCE * 1000)
 
 # What Chromium would fetch for itself is switched off: a test's machine may have no network.
 QUIET = ["--no-sandbox", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync", "--disable-quic"]
@@ -26,6 +31,20 @@ QUIET = ["--no-sandbox", "--no-first-run", "--disable-background-networking", "-
 # A policy's refusal becomes a message of the console; the moment of the first verdict is kept.
 POLICY = """addEventListener("securitypolicyviolation", ({ violatedDirective, blockedURI }) =>
   console.error(`policy: ${violatedDirective} ${blockedURI}`));"""
+# Builtins that are younger than Chrome 103, Firefox 113 or Safari 16.4, by the support tables of MDN (browser-compat-data 8.1.9).
+YOUNG = {
+    "Array": "fromAsync", "Array.prototype": "toReversed toSorted toSpliced with", "Map": "groupBy", "Object": "groupBy",
+    "ArrayBuffer.prototype": "detached maxByteLength resizable resize transfer transferToFixedLength",
+    "Map.prototype": "getOrInsert getOrInsertComputed", "WeakMap.prototype": "getOrInsert getOrInsertComputed",
+    "Promise": "try withResolvers", "Math": "f16round sumPrecise", "JSON": "isRawJSON rawJSON", "RegExp": "escape", "Error": "isError",
+    "Set.prototype": "difference intersection isDisjointFrom isSubsetOf isSupersetOf symmetricDifference union",
+    "String.prototype": "isWellFormed toWellFormed", "Uint8Array": "fromBase64 fromHex",
+    "Uint8Array.prototype": "setFromBase64 setFromHex toBase64 toHex",
+    "Uint8Array.prototype.__proto__": "toReversed toSorted with", "Date.prototype": "toTemporalInstant",
+    "[].keys().__proto__.__proto__": "drop every filter find flatMap forEach includes join map reduce some take toArray",
+    "globalThis": "Iterator Float16Array Temporal DisposableStack AsyncDisposableStack SuppressedError",
+}
+OLD = "".join(f"for (const name of {names.split()}) delete {of}[name];" for of, names in YOUNG.items())
 VERDICT = """
 addEventListener("DOMContentLoaded", () => {
   const status = document.getElementById("status");
@@ -81,13 +100,14 @@ def browser():
 def shell(tmp_path):
     """Runs a line of the command line in a folder of its own."""
 
+    environment = {**os.environ, "PATH": f"{PROGRAM.parent}{os.pathsep}{os.environ['PATH']}"}
+
     def run(line, text=""):
-        path = f"{PROGRAM.parent}{os.pathsep}{os.environ['PATH']}"
-        done = subprocess.run(["sh", "-ec", line], cwd=tmp_path, input=text, capture_output=True, text=True, env={**os.environ, "PATH": path})
+        done = subprocess.run(["sh", "-ec", line], cwd=tmp_path, input=text, capture_output=True, text=True, env=environment)
         assert done.returncode == 0, f"{line}\n{done.stderr}"
         return done.stdout
 
-    run.folder = tmp_path
+    run.folder, run.environment = tmp_path, environment
     return run
 
 
@@ -96,11 +116,12 @@ def visit(browser, server, shell):
     """Opens the page as `visit(**options of the browser's context)`."""
     contexts, wrong = [], []
 
-    def open_page(address=server.address, context=None, **options):
+    def open_page(address=server.address, context=None, init="", **options):
         if context is None:
             context = browser.new_context(**{"viewport": {"width": 1400, "height": 900}, **options})
             contexts.append(context)
-            context.add_init_script(POLICY + VERDICT)
+            context.set_default_timeout(PATIENCE * 1000)
+            context.add_init_script(OLD + POLICY + VERDICT + init)
             context.on("console", lambda message: wrong.append(f"console: {message.text}"))
             context.on("weberror", lambda error: wrong.append(f"error: {error.error}"))
             context.on("request", lambda request: asked(request.url))
@@ -139,11 +160,13 @@ class Desk:
     def ready(self):
         return self.says("Ready")
 
+    def settled(self):
+        """Waits until all that is shown, and every file to take along, is of what was put in."""
+        self.until(lambda: self.page.evaluate("() => isSettled()"), lambda: self.see("#status").text_content())
+        return self
+
     def compiles(self, name=""):
-        """Waits until an airframe compiles and nothing more is asked of the worker."""
-        self.says(f"{name} compiles" if name else "compiles")
-        self.until(lambda: self.page.evaluate("() => waiting.size === 0"))
-        return self.says("compiles")
+        return self.settled().says(f"{name} compiles" if name else "compiles")
 
     def shows(self, element, text):
         """Waits for a text in one of the elements; what is there instead is told in few words."""
@@ -167,17 +190,21 @@ class Desk:
         self.see("#drop").dispatch_event("drop", {"dataTransfer": transfer})
         return self
 
+    def opened(self, part):
+        """A part of the page, with what it is folded in opened."""
+        self.see(part).evaluate("(part) => { for (let box = part; box; box = box.parentElement) if (box.tagName === 'DETAILS') box.open = true; }")
+        return self.settled().see(part)
+
+    def link(self, output):
+        """The link of a file to take along."""
+        return self.opened(f"[data-output='{output}']")
+
     def save(self, output):
-        """Presses a button of the list of files; the name and the bytes of what was saved."""
-        click = lambda: self.click(f"[data-output='{output}']")
-        try:
-            with self.page.expect_download() as download:
-                click()
-        except TimeoutError:
-            # On a busy machine one of some hundred downloads is lost; likely as the page begins it more than 5 s after the click, when
-            # Chromium no longer takes it for the user's.
-            with self.page.expect_download() as download:
-                click()
+        """Follows the link of a file; the name and the bytes of what was saved."""
+        link = self.link(output)
+        expect(link).to_have_attribute("href", re.compile("^blob:"))
+        with self.page.expect_download() as download:
+            link.click()
         return download.value.suggested_filename, Path(download.value.path()).read_bytes()
 
     def run_shown(self):
@@ -202,12 +229,12 @@ class Desk:
 
     def still(self):
         """Waits until the sliders' newest position is drawn."""
-        self.until(lambda: self.page.evaluate("() => hand.frames > 0 && !hand.busy && !hand.stale"))
+        self.settled().until(lambda: self.page.evaluate("() => hand.frames > 0 && !hand.busy && !hand.stale"))
         return self
 
     @staticmethod
-    def until(holds, told=lambda: "it did not come to that", seconds=20):
-        end = time.monotonic() + seconds
+    def until(holds, told=lambda: "it did not come to that"):
+        end = time.monotonic() + PATIENCE
         while not holds():
             assert time.monotonic() < end, told()
             time.sleep(0.05)

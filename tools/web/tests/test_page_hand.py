@@ -131,7 +131,7 @@ def test_allocation_is_edited_in_the_file(hand, key, value, line, wrench):
         desk.page.fill(f"#{axis}-number", str(x))
         desk.page.keyboard.press("Enter")
     _, before = same_as_mix(desk, saved(desk))
-    field = desk.see(f"#{key}")
+    field = desk.opened(f"#{key}")
     field.select_option(value) if key == "airmode" else (field.fill(value), field.press("Enter"))
     desk.until(lambda: line in desk.text())
     desk.compiles()
@@ -146,9 +146,11 @@ def saved(desk):
 
 def test_a_value_that_is_none_is_said(hand):
     desk = hand("isae-x8")
-    desk.see("#yaw_reserve_nm").fill("much")
-    desk.see("#yaw_reserve_nm").press("Enter")
-    desk.shows("#status.error", "much")
+    desk.opened("#yaw_reserve_nm").fill("much")
+    desk.shows("#status.error", "Yaw reserve is refused").shows("#yaw_reserve_nm-refused", "much is no number")
+    desk.page.fill("#roll-number", "little")
+    desk.page.keyboard.press("Enter")
+    desk.shows("#flags.error", "little is no number")
 
 
 @pytest.mark.parametrize("name", ["x8-16in-biquadratic", "px4-x12"])

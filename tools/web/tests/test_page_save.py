@@ -1,5 +1,6 @@
 """Every file that the page saves is the command line's to the byte."""
 
+import re
 from pathlib import Path
 
 import pytest
@@ -39,11 +40,11 @@ def same_parameters(desk, output, words):
         name, content = desk.save(output)
         assert content == expected.encode()
         assert name.endswith({"px4": ".params", "ardupilot": ".parm", "betaflight": ".txt"}[output.removesuffix("-own")])
-        notes = [f"{name}: {message}" for _, message in told]
-    else:
-        desk.click(f"[data-output='{output}']")
         notes = [message for _, message in told]
-    expect(desk.see("#notes li")).to_have_text(notes)
+    else:
+        expect(desk.link(output)).not_to_have_attribute("href", re.compile("."))
+        notes = [message for _, message in told]
+    expect(desk.see(f"li:has(> [data-output='{output}']) li")).to_have_text(notes)
 
 
 def test_bench_files_are_in_the_saved_report(desk):
@@ -57,11 +58,11 @@ def test_bench_files_are_in_the_saved_report(desk):
 
 def test_pulse_widths_reach_the_parameters(desk):
     desk.drop(ROOT / "airframes/isae-x8.toml").compiles()
-    desk.page.fill("#pulses", "1050,1950")
+    desk.opened("#pulses").fill("1050,1950")
     same_parameters(desk, "ardupilot", "isae-x8.toml --stack ardupilot --pwm-range 1050,1950")
     desk.page.fill("#pulses", "1950")
-    desk.click("[data-output='px4']")
-    expect(desk.see("#notes .error")).to_be_visible()
+    desk.settled()
+    expect(desk.see("#files li li.error").first).to_contain_text("1950")
 
 
 def test_the_report_on_the_page_is_the_saved_one(visit, desk):
@@ -75,7 +76,7 @@ def test_the_report_on_the_page_is_the_saved_one(visit, desk):
 def test_the_check_list_is_ticked_and_kept(desk):
     desk.drop(ROOT / "airframes/isae-x8.toml").compiles()
     box = desk.see("#report input[type=checkbox]").first
-    box.check(timeout=20000)
+    box.check()
     desk.page.reload()
     desk.compiles()
     expect(box).to_be_checked(timeout=20000)

@@ -74,9 +74,11 @@ fn bundle(folder: &Path) -> Result<String, Box<dyn Error>> {
     let script = [report_script].into_iter().chain(parts).map(read);
     let script = script.collect::<Result<Vec<_>, _>>()?.concat();
     let worker = [output.js(), &read("tools/web/page/worker.js")?].concat();
+    let watch = read("tools/web/page/watch.js")?;
     let policy = format!(
-        "default-src 'none'; script-src '{}' 'wasm-unsafe-eval'; style-src '{}'; worker-src blob: 'self'; img-src data:; \
+        "default-src 'none'; script-src '{}' '{}' 'wasm-unsafe-eval'; style-src '{}'; worker-src blob: 'self'; img-src data:; \
          base-uri 'none'; form-action 'none'",
+        digest(&watch),
         digest(&script),
         digest(&style)
     );
@@ -84,6 +86,7 @@ fn bundle(folder: &Path) -> Result<String, Box<dyn Error>> {
     let page = [
         ("{{policy}}", policy.as_str()),
         ("{{style}}", &style),
+        ("{{watch}}", &watch),
         ("{{script}}", &script),
         ("{{worker}}", &worker),
         ("{{sheet}}", &read("examples/no-bench/rotor.csv")?),
