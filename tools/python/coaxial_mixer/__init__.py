@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from importlib.metadata import version
 from typing import Any, NamedTuple, Union
 
@@ -117,10 +117,11 @@ class _Airframe:
     ) -> F64:
         """The wrench that throttles (N, rotors) of any mixer give by the airframe's physics: (N, 4).
 
+        A table with names is read by the columns throttle_0, .. in any order.
         Without ``volts`` (V) and ``density`` (kg/m3), a number or (N,), those of the bench are taken. ``failed``
         has the outputs of rotors that stand still, or a boolean for every output. Raises :class:`MixerError` outside the airframe's ranges.
         """
-        return self._native.wrench(self._rows(np.float64, throttles, self.rotors, volts, density, failed))
+        return self._native.wrench(self._rows(np.float64, throttles, self._outputs(), volts, density, failed))
 
     def efforts(
         self,
@@ -130,7 +131,10 @@ class _Airframe:
         density: npt.ArrayLike | None = None,
     ) -> F64:
         """Thrust (N) and torque (N m, as on the bench) of every unit: (N, units, 2). Arguments as :meth:`wrench`."""
-        return self._native.efforts(self._rows(np.float64, throttles, self.rotors, volts, density, failed))
+        return self._native.efforts(self._rows(np.float64, throttles, self._outputs(), volts, density, failed))
+
+    def _outputs(self) -> list[str]:
+        return [f"throttle_{channel}" for channel in range(self.rotors)]
 
     def _out(self, failed: Failed) -> list[int]:
         """The outputs of rotors that are out, of outputs or of a mask of all of them."""
@@ -145,24 +149,83 @@ class _Airframe:
             return [channel for channel, one in enumerate(out) if one]
         if not all(isinstance(one, (int, np.integer)) and 0 <= one < self.rotors for one in out):
             raise MixerError(f"failed = {failed!r} has what is no output: {needed}")
+        if len(set(out)) < len(out):
+            raise MixerError(f"failed = {failed!r} names an output twice; a mask has booleans, not 0 and 1: {needed}")
         return [int(one) for one in out]
 
     def _rows(
-        self, dtype: Any, table: Any, columns: int, volts: Any, density: Any = None, failed: Failed = ()
+        self,
+        dtype: Any,
+        table: Any,
+        columns: Sequence[str],
+        volts: Any,
+        density: Any = None,
+        failed: Failed = (),
     ) -> _native.Rows:
-        rows = np.atleast_2d(np.asarray(table, dtype))
-        if rows.ndim != 2 or rows.shape[1] != columns:
-            raise MixerError(f"an array of shape {np.shape(table)} where (N, {columns}) is needed")
+        names = _names(table)
+        if names is None:
+            rows = _numbers("the array", table, dtype)
+        else:
+            missing = [name for name in columns if name not in names]
+            if missing:
+                raise MixerError(f"a table without {', '.join(missing)}: its columns are {', '.join(map(str, names))}")
+            rows = np.stack([_numbers(name, table[name], dtype) for name in columns], axis=-1)
+            volts = _condition("volts", volts, "voltage_v", table, names)
+            density = _condition("density", density, "density_kg_m3", table, names)
+        shape, rows = rows.shape, np.atleast_2d(rows)
+        if rows.ndim != 2 or rows.shape[1] != len(columns):
+            raise MixerError(f"an array of shape {shape} where (N, {len(columns)}) is needed: {', '.join(columns)}")
 
         def column(name: str, values: Any) -> Any:
             if values is None:
                 return None
-            values = np.asarray(values, dtype)
+            values = _numbers(name, values, dtype)
             if values.shape not in [(), (1,), (len(rows),)]:
                 raise MixerError(f"{name} of shape {values.shape} where a number or ({len(rows)},) is needed")
             return np.broadcast_to(values, (len(rows),))
 
         return rows, column("volts", volts), column("density", density), self._out(failed)
+
+
+_WRENCH = ("roll_nm", "pitch_nm", "yaw_nm", "thrust_n")
+
+
+def _names(table: Any) -> list[Any] | None:
+    """The columns of a table that has names: a DataFrame or a row of one, a structured array, a dict."""
+    if isinstance(table, Mapping):
+        return list(table)
+    names = getattr(table, "columns", None)
+    if names is None:
+        names = getattr(getattr(table, "dtype", None), "names", None)
+    if names is None and not callable(getattr(table, "index", None)):
+        names = getattr(table, "index", None)
+    if names is None or not any(isinstance(name, str) for name in names):
+        return None
+    return list(names)
+
+
+def _condition(name: str, given: Any, column: str, table: Any, names: list[Any]) -> Any:
+    """What the argument gives, or the table's column."""
+    if column not in names:
+        return given
+    if given is not None:
+        raise MixerError(f"{name} is given, and the table has {column}: leave one of them out")
+    return table[column]
+
+
+def _numbers(name: str, values: Any, dtype: Any) -> Any:
+    """An array of real numbers."""
+    if np.ma.is_masked(values):
+        raise MixerError(f"{name} has masked values: fill them, or leave their rows out")
+    try:
+        array = np.asarray(values)
+        if array.dtype.kind in "cSUMm":
+            raise MixerError(f"{name} has values of type {array.dtype}, no real numbers")
+        return array.astype(dtype)
+    except (TypeError, ValueError, OverflowError) as error:
+        if isinstance(error, MixerError):
+            raise
+        raise MixerError(f"{name} is no array of numbers: {error}") from None
 
 
 class Mixer(_Airframe):
@@ -198,10 +261,12 @@ class Mixer(_Airframe):
     ) -> Mix:
         """The throttles for wrenches (N, 4), by the runtime and the tables of the firmware.
 
+        A table with names, as a DataFrame, is read by the columns roll_nm, pitch_nm, yaw_nm, thrust_n, and voltage_v and
+        density_kg_m3 where it has them, in any order.
         Without ``volts`` (V) and ``density`` (kg/m3), a number or (N,), those of the bench are taken. ``failed``
         has the outputs of rotors that are out, or a boolean for every output. Raises :class:`MixerError` for what is not finite.
         """
-        return Mix(*self._native.mix(self._rows(np.float32, wrenches, 4, volts, density, failed)))
+        return Mix(*self._native.mix(self._rows(np.float32, wrenches, _WRENCH, volts, density, failed)))
 
 
 class Conventional(_Airframe):
@@ -209,19 +274,19 @@ class Conventional(_Airframe):
 
     def mix(self, wrenches: npt.ArrayLike, volts: npt.ArrayLike | None = None) -> ConventionalMix:
         """The throttles for wrenches (N, 4), every rotor taken as isolated. Arguments as :meth:`Mixer.mix`."""
-        return ConventionalMix(*self._native.conventional(self._rows(np.float32, wrenches, 4, volts)))
+        return ConventionalMix(*self._native.conventional(self._rows(np.float32, wrenches, _WRENCH, volts)))
 
 
 def _read(toml: Path | bytes) -> tuple[str, bytes]:
     if isinstance(toml, bytes):
         return "airframe", toml
-    if isinstance(toml, str) and "\n" in toml:
-        return "airframe", toml.encode()
-    name = os.fspath(toml)
     try:
+        if isinstance(toml, str) and "\n" in toml:
+            return "airframe", toml.encode()
+        name = os.fspath(toml)
         with open(name, "rb") as file:
             return name, file.read()
-    except OSError as error:
+    except (OSError, TypeError, ValueError) as error:
         raise MixerError(str(error)) from error
 
 
@@ -266,7 +331,10 @@ def _words(files: Sequence[Path], options: dict[str, Any]) -> list[str]:
                 words.append(option)
             elif one is not False and one is not None:
                 words.append(f"{option}={','.join(str(part) for part in parts)}")
-    return [*words, "--", *(os.fspath(file) for file in files)]
+    try:
+        return [*words, "--", *(os.fspath(file) for file in files)]
+    except TypeError as error:
+        raise MixerError(str(error)) from error
 
 
 def _identified(texts: tuple[str, str, str, str, list[str]]) -> Identified:

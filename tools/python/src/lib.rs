@@ -32,7 +32,7 @@ mod _native {
     use mixer_identify::refusal::Refusal;
     use mixer_identify::texts::Answer;
     use mixer_rt::Health;
-    use numpy::ndarray::{ArrayView1, IntoDimension, Ix2, Ix3};
+    use numpy::ndarray::{Array1, ArrayView1, IntoDimension, Ix2, Ix3};
     use numpy::{Element, PyArray, PyArray1, PyArrayMethods as _, PyReadonlyArray1, PyReadonlyArray2};
     use pyo3::prelude::*;
     use pyo3::types::PyTuple;
@@ -75,32 +75,45 @@ mod _native {
             self.checked.compiled.airframe.rotors()
         }
 
-        /// Answers every row, or names the first that is bad.
-        fn answers<T: Element + Copy, A, E: Display>(
+        /// Answers every row, or names the first that is bad. The rows are copied, so that other threads of Python may
+        /// go on meanwhile.
+        fn answers<T: Element + Copy, A: Send, E: Display>(
             &self,
+            py: Python<'_>,
             (table, volts, density, failed): Rows<'_, T>,
-            answer: impl Fn(&Compiled, Health, &Row<T>) -> Result<A, E>,
+            answer: impl Fn(&Compiled, Health, &Row<T>) -> Result<A, E> + Sync,
         ) -> PyResult<Vec<A>> {
             let compiled = &self.checked.compiled;
             let health = rows::health(&compiled.airframe, failed).map_err(error)?;
-            let at = |column: &Column<'_, T>, k| column.as_ref()?.as_array().get(k).copied();
+            let table = table.to_owned_array();
+            let [volts, density] =
+                [volts, density].map(|column| column.map(|column| column.to_owned_array()));
+            let at = |column: &Option<Array1<T>>, k: usize| column.as_ref()?.get(k).copied();
             let answer = |(k, values): (usize, ArrayView1<'_, T>)| {
                 let row = Row {
                     values: values.to_vec(),
                     voltage_v: at(&volts, k),
                     density_kg_m3: at(&density, k),
                 };
-                answer(compiled, health, &row).map_err(|message| error(format_args!("row {k}: {message}")))
+                answer(compiled, health, &row).map_err(|message| format!("row {k}: {message}"))
             };
-            table.as_array().outer_iter().enumerate().map(answer).collect()
+            py.detach(|| {
+                table
+                    .outer_iter()
+                    .enumerate()
+                    .map(answer)
+                    .collect::<Result<_, _>>()
+            })
+            .map_err(error)
         }
     }
 
     #[pymethods]
     impl Native {
         #[new]
-        fn new(name: &str, text: Vec<u8>) -> PyResult<Self> {
-            let checked = Source::from_bytes(name, text).and_then(|source| mixer_facts::check(&source));
+        fn new(py: Python<'_>, name: &str, text: Vec<u8>) -> PyResult<Self> {
+            let check = || Source::from_bytes(name, text).and_then(|source| mixer_facts::check(&source));
+            let checked = py.detach(check);
             Ok(Native {
                 checked: checked.map_err(error)?,
             })
@@ -142,7 +155,7 @@ mod _native {
 
         /// Throttles, achieved wrenches, saturation.
         fn mix<'py>(&self, py: Python<'py>, rows: Rows<'py, f32>) -> PyResult<Bound<'py, PyTuple>> {
-            let mixed = self.answers(rows, mix::mix)?;
+            let mixed = self.answers(py, rows, mix::mix)?;
             let n = mixed.len();
             let throttles = array(py, mixed.iter().flat_map(|mix| mix.0.clone()), [n, self.rotors()])?;
             let achieved = array(py, mixed.iter().flat_map(|mix| mix.1.to_array()), [n, 4])?;
@@ -153,7 +166,7 @@ mod _native {
         /// Throttles of the conventional mixer, and whether none was clipped.
         fn conventional<'py>(&self, py: Python<'py>, rows: Rows<'py, f32>) -> PyResult<Bound<'py, PyTuple>> {
             let isolated = IsolatedTables::new(&self.checked.compiled);
-            let mixed = self.answers(rows, |compiled, _, row| {
+            let mixed = self.answers(py, rows, |compiled, _, row| {
                 let reference_v = compiled.airframe.reference_v() as f32;
                 isolated.conventional(&mix::setpoint(row), row.voltage_v.unwrap_or(reference_v))
             })?;
@@ -164,14 +177,14 @@ mod _native {
         }
 
         fn wrench<'py>(&self, py: Python<'py>, rows: Rows<'py, f64>) -> Made<'py, f64, Ix2> {
-            let wrenches = self.answers(rows, wrench::wrench)?;
+            let wrenches = self.answers(py, rows, wrench::wrench)?;
             let n = wrenches.len();
             array(py, wrenches.into_iter().flatten(), [n, 4])
         }
 
         /// Thrust and torque of every unit.
         fn efforts<'py>(&self, py: Python<'py>, rows: Rows<'py, f64>) -> Made<'py, f64, Ix3> {
-            let efforts = self.answers(rows, wrench::efforts)?;
+            let efforts = self.answers(py, rows, wrench::efforts)?;
             let n = efforts.len();
             array(
                 py,
@@ -195,9 +208,9 @@ mod _native {
     }
 
     #[pyfunction]
-    fn identify(words: Vec<String>) -> Texts {
+    fn identify(py: Python<'_>, words: Vec<String>) -> Texts {
         let args: IdentifyArgs = parsed("identify", words.iter().map(String::as_str)).map_err(error)?;
-        let answer = args.answer(&bench_files::text);
+        let answer = py.detach(|| args.answer(&bench_files::text));
         let (answer, notes) = answer.map_err(|none| match none {
             NoAnswer::Usage(message) => error(message),
             NoAnswer::Refused(refusals) => refused(refusals),
@@ -206,9 +219,9 @@ mod _native {
     }
 
     #[pyfunction]
-    fn predict(words: Vec<String>) -> Texts {
+    fn predict(py: Python<'_>, words: Vec<String>) -> Texts {
         let args: PredictArgs = parsed("predict", words.iter().map(String::as_str)).map_err(error)?;
-        let answer = args.answer(&bench_files::text).map_err(refused)?;
+        let answer = py.detach(|| args.answer(&bench_files::text)).map_err(refused)?;
         texts(answer, args.place.frame.as_ref(), Vec::new())
     }
 }

@@ -1,6 +1,9 @@
 """Arrays in, arrays out: the bits of the command line on every shipped airframe."""
 
 import pickle
+import sys
+import threading
+import time
 import tomllib
 
 import coaxial_mixer
@@ -107,6 +110,71 @@ def test_rotors_out_are_channels_or_a_mask(mixer):
         assert np.array_equal(mixer.mix(at, failed=failed).throttles, by_channel.throttles)
     none_out = mixer.mix(at, failed=[False] * mixer.rotors)
     assert np.array_equal(none_out.throttles, mixer.mix(at).throttles)
+
+
+def test_tables_with_names_are_read_by_them(mixer):
+    class Frame:
+        """As a DataFrame: columns by name, values by position."""
+
+        def __init__(self, columns):
+            self._columns = columns
+
+        @property
+        def columns(self):
+            return list(self._columns)
+
+        def __getitem__(self, name):
+            return self._columns[name]
+
+        def __array__(self, dtype=None, copy=None):
+            return np.column_stack(list(self._columns.values())).astype(dtype)
+
+    wrenches, conditions = setpoints(mixer)
+    columns = dict(zip(AXES, wrenches.T))
+    shuffled = {"note": np.zeros(len(wrenches)), **{name: columns[name] for name in reversed(AXES)}}
+    expected = mixer.mix(wrenches, volts=15.0)
+    structured = np.zeros(len(wrenches), [(name, np.float64) for name in shuffled])
+    for name, values in shuffled.items():
+        structured[name] = values
+    for table in (Frame(shuffled), shuffled, structured):
+        assert np.array_equal(mixer.mix(table, volts=15.0).throttles, expected.throttles)
+    with_volts = Frame({"voltage_v": conditions[:, 0], **shuffled})
+    expected = mixer.mix(wrenches, volts=conditions[:, 0]).throttles
+    assert np.array_equal(mixer.mix(with_volts).throttles, expected)
+    with pytest.raises(coaxial_mixer.MixerError, match="volts is given, and the table has voltage_v"):
+        mixer.mix(with_volts, volts=15.0)
+    names = [f"throttle_{k}" for k in range(mixer.rotors)]
+    backwards = Frame({name: expected[:, k] for k, name in reversed(list(enumerate(names)))})
+    assert np.array_equal(mixer.wrench(backwards), mixer.wrench(expected))
+    # Numbers as names are positions.
+    assert np.array_equal(mixer.mix(Frame(dict(enumerate(wrenches.T)))).throttles, mixer.mix(wrenches).throttles)
+
+
+def test_other_threads_go_on_while_rows_are_mixed():
+    mixer = coaxial_mixer.compile("airframes/isae-x8.toml")
+    rows = np.tile([[0.5, 0.0, 0.1, 40.0]], (5_000, 1))
+    ticks = []
+    done = threading.Event()
+
+    def tick():
+        while not done.is_set():
+            ticks.append(None)
+            time.sleep(0)
+
+    other = threading.Thread(target=tick)
+    # A thread that wants the interpreter gets it at the end of a call at the earliest.
+    before = sys.getswitchinterval()
+    sys.setswitchinterval(1000.0)
+    try:
+        other.start()
+        began = len(ticks)
+        mixer.mix(rows)
+        during = len(ticks) - began
+    finally:
+        done.set()
+        sys.setswitchinterval(before)
+        other.join()
+    assert during > 10
 
 
 def test_a_mixer_is_kept_by_pickle_and_made_of_bytes(airframe):
