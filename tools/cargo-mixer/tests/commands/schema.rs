@@ -126,7 +126,7 @@ fn the_parser_agrees_key_by_key() {
     let other = "torque_points = [[12.8, 0.8], [14.8, 1.0], [16.8, 1.2]]\nthrust_exponent = 1.8\n";
     let points = "thrust_points = [[12.8, 0.8], [14.8, 1.0], [16.8, 1.2]]\ntorque_exponent = 1.8\n";
     let layout = "[layout]\narm_m = 0.45\nunits = 4\nfirst_angle_deg = 45.0\nspins = [\"cw\", \"ccw\", \"cw\", \"ccw\"]\n\
-                  channels = [[0, 4], [1, 5], [2, 6], [3, 7]]\n[vehicle]\nmass_kg = 3.0\ninertia_kg_m2 = [0.1, 0.1, 0.2]\n[inverse]\nmethod = \"auto\"\n\
+                  channels = [[0, 4], [1, 5], [2, 6], [3, 7]]\n[vehicle]\nmass_kg = 3.0\ninertia_kg_m2 = [0.1, 0.1, 0.2]\nrotor_inertia_kg_m2 = 3e-4\n[inverse]\nmethod = \"auto\"\n\
                   [air]\nreference_density_kg_m3 = 1.2\nrange_kg_m3 = [0.7, 1.4]\nthrust_exponent = 0.75\ntorque_exponent = 0.75\n";
     let alone = "[pair.lower_out]\nthrust_n = [1.0, 10.0, 0.0]\ntorque_nm = [-0.01, -0.2, 0.0]\n\
                  [pair.upper_out]\nthrust_n = [1.0, 10.0, 0.0]\ntorque_nm = [0.01, 0.2, 0.0]\n\
