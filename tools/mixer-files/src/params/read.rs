@@ -1,7 +1,7 @@
 //! What `import` reads of a vehicle, and what `params` makes of it: every parameter that is read is written as the airframe
 //! file needs it now, or named as one that stays.
 
-use crate::params::Stack;
+use crate::params::stack::Stack;
 
 /// What becomes of parameters that are read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
