@@ -52,7 +52,7 @@ pub struct Numbers {
     pub volts: Option<f64>,
     /// Least and greatest throttle in hover, of the upper and of the lower rotors.
     pub hover: Option<[[f64; 2]; 2]>,
-    /// Throttles at which this airframe gives [`USUAL`] of its largest bare thrust.
+    /// Throttles at which this airframe gives a usual share of its largest bare thrust.
     pub usual_hover: Option<[f64; 2]>,
     /// Largest bare thrust over weight.
     pub over_weight: Option<f64>,
