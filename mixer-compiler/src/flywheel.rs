@@ -13,7 +13,7 @@
 //! s / (1 - s)^2 is proportional to d: the power falls from 2 at low throttle.
 //!
 //! w and J are not in an airframe file, or need not be. Both follow from the largest thrust of a rotor, since
-//! propellers of multirotors are alike: their tips run at [`TIP_M_S`] at full throttle and they carry [`LOADING_N_M2`] there.
+//! propellers of multirotors are alike: their tips run at `TIP_M_S` at full throttle and they carry `LOADING_N_M2` there.
 
 use serde::Serialize;
 
