@@ -60,6 +60,9 @@ const CUT_UNIT: u32 = 115;
 const ITERATION: u32 = 480;
 const ITERATION_UNIT: [u32; 2] = [355, 420];
 
+/// A slack of the request in all iterations: that of yaw beyond the request, with rotors out, and that of the reserve beside it.
+const SLACK: u32 = 2 * ITERATIONS * 60;
+
 /// Least norm with rotors out beside that of whole units, and one unit in it that has a single rotor.
 const ROTORS_OUT: u32 = 1000;
 const ROTORS_OUT_UNIT: u32 = 800;
@@ -78,7 +81,8 @@ pub(super) fn bound(compiled: &Compiled) -> Option<u32> {
 pub(super) fn with_rotors_out(compiled: &Compiled) -> Option<u32> {
     let n = compiled.tables.units.len() as u32;
     let least_norm = least_norm(compiled)? + ROTORS_OUT + n * ROTORS_OUT_UNIT;
-    Some(least_norm + per_mix(compiled) + interior(compiled))
+    let slacks = 1 + u32::from(compiled.tables.priorities.yaw_reserve_nm > 0.0);
+    Some(least_norm + per_mix(compiled) + interior(compiled) + slacks * SLACK)
 }
 
 /// Least norm of all units.
