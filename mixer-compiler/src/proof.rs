@@ -9,7 +9,6 @@
 //! The box is cut into cells. On each, `cell.rs` bounds the residual; the worst cell is halved
 //! until the largest bound is as small as was asked, or the work allowed is done.
 
-mod bend;
 mod cell;
 mod correction;
 mod expansion;
@@ -223,10 +222,7 @@ impl<'a> Subject<'a> {
             [value, derivative].map(|gap: f64| 1.02 * gap)
         };
         Subject {
-            monomials: [
-                Monomials::new(basis, &pair.thrust_n),
-                Monomials::new(basis, &pair.torque_nm),
-            ],
+            monomials: [&pair.thrust_n, &pair.torque_nm].map(|terms| Monomials::new(basis, terms)),
             pair: &map.pair,
             inverse: &map.inverse,
             throttle: map.throttle,
@@ -279,8 +275,6 @@ impl ThrottleCell {
     }
 }
 
-#[cfg(test)]
-mod bend_tests;
 #[cfg(test)]
 mod enclosure_tests;
 #[cfg(test)]

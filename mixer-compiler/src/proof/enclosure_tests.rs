@@ -189,39 +189,72 @@ fn roots_are_enclosed() {
     assert!(root.range().low <= 0.0 && root.range().high * root.range().high >= 0.03);
 }
 
-/// Every derivative that is read from an expansion, against the exact polynomial.
+/// F(t + v) in full, without F(t), and without what a linear model has of it; steps small and large.
 #[test]
 fn expansions_enclose_the_polynomial() {
     let mut next = numbers();
-    let power = |x: &BigRational, exponent: u8| {
-        (0..exponent).fold(BigRational::from(BigInt::from(1)), |product, _| product * x)
-    };
+    let one = || BigRational::from(BigInt::from(1));
+    let power = |x: &BigRational, exponent: u8| (0..exponent).fold(one(), |product, _| product * x);
     for basis in Basis::ALL {
-        for _ in 0..50 {
-            let terms: Vec<f64> = basis.exponents().iter().map(|_| 10.0 * next()).collect();
-            let centre = [0.5 + 0.4 * next(), 0.5 + 0.4 * next()];
-            let half = [0.06 * (1.0 + next()), 0.06 * (1.0 + next())];
-            let expansion = Expansion::new(&Monomials::new(basis, &terms), centre, half);
-            let at = [next(), next()].map(exact);
-            let throttle = [0, 1].map(|k: usize| exact(centre[k]) + exact(half[k]) * &at[k]);
-            let sum = |order: [u8; 2]| {
-                let mut sum = BigRational::zero();
-                for (&(i, j), &term) in basis.exponents().iter().zip(&terms) {
-                    if i >= order[0] && j >= order[1] {
-                        let factor = if order[0] == 1 { f64::from(i) } else { 1.0 }
-                            * if order[1] == 1 { f64::from(j) } else { 1.0 };
-                        sum += exact(term)
-                            * exact(factor)
-                            * power(&throttle[0], i - order[0])
-                            * power(&throttle[1], j - order[1]);
+        for round in 0..60 {
+            let terms = [10.0, 0.1].map(|size| {
+                basis
+                    .exponents()
+                    .iter()
+                    .map(|_| size * next())
+                    .collect::<Vec<f64>>()
+            });
+            let truth = [0, 1].map(|k| Taylor::coordinate(0.5 + 0.3 * next(), 0.02 * (1.0 + next()), k == 1));
+            let size = if round % 2 == 0 { 1e-3 } else { 0.1 };
+            let v = [0, 1].map(|_| {
+                let linear = [size * next(), 0.1 * size * next(), 0.1 * size * next()];
+                Taylor::new([linear[0], linear[1], linear[2], 0.0, 0.0, 0.0], 0.0)
+            });
+            let monomials = terms.each_ref().map(|terms| Monomials::new(basis, terms));
+            let expansion = Expansion::new(&monomials, truth.each_ref().map(Taylor::range));
+            let [a, b] = [next(), next()].map(exact);
+            let [t, step] =
+                [&truth, &v].map(|functions| functions.each_ref().map(|function| function.at(&a, &b).0));
+            let after = [0, 1].map(|k: usize| &t[k] + &step[k]);
+            for least in 0..3 {
+                let sums = expansion.sums(&v, least);
+                for k in 0..2 {
+                    let mut sought = BigRational::zero();
+                    for (&(i, j), &term) in basis.exponents().iter().zip(&terms[k]) {
+                        let mut value = power(&after[0], i) * power(&after[1], j);
+                        if least >= 1 {
+                            value -= power(&t[0], i) * power(&t[1], j);
+                        }
+                        if least == 2 && i > 0 {
+                            value -= exact(f64::from(i)) * power(&t[0], i - 1) * power(&t[1], j) * &step[0];
+                        }
+                        if least == 2 && j > 0 {
+                            value -= exact(f64::from(j)) * power(&t[0], i) * power(&t[1], j - 1) * &step[1];
+                        }
+                        sought += exact(term) * value;
+                    }
+                    let (value, remainder) = sums[k].at(&a, &b);
+                    assert!((sought - value).abs() <= remainder, "{basis:?} {round} {least}");
+                }
+            }
+            for (k, axis) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+                // The largest slope is no less than that of any point.
+                let mut slope = BigRational::zero();
+                for (&(i, j), &term) in basis.exponents().iter().zip(&terms[k]) {
+                    let exponents = [i, j];
+                    if exponents[axis] > 0 {
+                        let mut lowered = exponents;
+                        lowered[axis] -= 1;
+                        slope += exact(term)
+                            * exact(f64::from(exponents[axis]))
+                            * power(&t[0], lowered[0])
+                            * power(&t[1], lowered[1]);
                     }
                 }
-                sum
-            };
-            let [by_u, by_l] = expansion.gradient();
-            for (enclosed, order) in [(expansion.value(), [0, 0]), (by_u, [1, 0]), (by_l, [0, 1])] {
-                let (value, remainder) = enclosed.at(&at[0], &at[1]);
-                assert!((sum(order) - value).abs() <= remainder, "{basis:?} {order:?}");
+                assert!(
+                    slope.abs() <= exact(expansion.along(k, axis, 1)),
+                    "{basis:?} {round}"
+                );
             }
         }
     }

@@ -1,311 +1,138 @@
-//! A quantity of the pair, expanded about the centre of a cell.
+//! The quantities of the pair, expanded about the throttles of a box.
 //!
-//! The quantities are polynomials, so Taylor's formula is exact: with the coefficients p_ij of the
-//! offsets from the centre, every derivative is known over the cell and around it. For a point t
-//! and a step v the part of the quantity that a linear model misses is
+//! They are polynomials, so Taylor's formula is exact. For a point t of the box and a step v
 //!
 //! ```text
-//! G(t; v) = F(t + v) - F(t) - J(t) v = sum over i + j >= 2 of F^(i,j)(t) / (i! j!) vu^i vl^j
+//! F(t + v) = sum over i, j of F^(i,j)(t) / (i! j!) vu^i vl^j
 //! ```
+//!
+//! Each coefficient is known over the box by its centre and its radius.
 
 use super::taylor::Taylor;
 use crate::airframe::{Basis, POWERS};
+use crate::bounds::interval::Interval;
 
-/// Coefficients by exponents of u and l, and their largest exponents.
+/// Coefficients by exponents of u and l.
+type Coefficients = [[f64; POWERS]; POWERS];
+
+/// A quantity of the airframe file.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Monomials {
-    coefficients: [[f64; POWERS]; POWERS],
-    degree: [usize; 2],
+    coefficients: Coefficients,
+    /// By orders of the derivative by u, how many by l do not vanish.
+    columns: [usize; POWERS],
     /// Sum of absolute coefficients.
     size: f64,
 }
 
 impl Monomials {
-    /// A quantity of the airframe file.
+    /// Of a basis, with the coefficients of the file.
     pub(super) fn new(basis: Basis, terms: &[f64]) -> Self {
-        let mut coefficients = [[0.0; POWERS]; POWERS];
-        let mut degree = [0; 2];
-        let mut size = 0.0;
+        let (mut coefficients, mut columns) = ([[0.0; POWERS]; POWERS], [0; POWERS]);
         for (&(i, j), &term) in basis.exponents().iter().zip(terms) {
             let [i, j] = [i, j].map(usize::from);
             coefficients[i][j] = term;
-            degree = [degree[0].max(i), degree[1].max(j)];
-            size += term.abs();
+            for columns in &mut columns[..=i] {
+                *columns = (j + 1).max(*columns);
+            }
         }
         Monomials {
             coefficients,
-            degree,
-            size,
+            columns,
+            size: terms.iter().map(|term| term.abs()).sum(),
         }
+    }
+
+    /// Coefficients of another polynomial of the same monomials at `by` + x, Horner's scheme.
+    fn shifted(&self, mut coefficients: Coefficients, by: [f64; 2]) -> Coefficients {
+        let rows = self.columns.iter().take_while(|columns| **columns > 0).count();
+        for (row, &columns) in coefficients.iter_mut().zip(&self.columns) {
+            for start in 1..columns {
+                for j in (start..columns).rev() {
+                    row[j - 1] += by[1] * row[j];
+                }
+            }
+        }
+        for start in 1..rows {
+            for i in (start..rows).rev() {
+                let above = coefficients[i];
+                for (below, above) in coefficients[i - 1].iter_mut().zip(above).take(self.columns[i]) {
+                    *below += by[0] * above;
+                }
+            }
+        }
+        coefficients
     }
 }
 
-/// See the module.
+/// F^(i,j) / (i! j!) of both quantities over a box.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Expansion {
-    /// Coefficients of (u - centre)^i (l - centre)^j.
-    p: [[f64; POWERS]; POWERS],
-    degree: [usize; 2],
-    half: [f64; 2],
-    /// Bound of the rounding in any value or derivative read from here: each coefficient is a sum
-    /// of products built in at most 16 operations, throttles are at most 1, cells at most one half,
-    /// and the binomial coefficients of degree 4 sum up to less than 2^8.
-    slack: f64,
+pub(super) struct Expansion([Coefficient; 2]);
+
+/// Of one quantity, by orders.
+#[derive(Clone, Copy, Debug)]
+struct Coefficient {
+    centre: Coefficients,
+    radius: Coefficients,
+    columns: [usize; POWERS],
 }
 
-/// Second derivatives `[F_uu / 2, F_ul, F_ll / 2]` around a cell, each as centre and radius, and
-/// the higher terms.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Curvature {
-    centre: [f64; 3],
-    radius: [f64; 3],
-    /// Bounds of the higher coefficients, by exponents.
-    higher: [[f64; POWERS]; POWERS],
-}
-
-const BINOMIAL: [[f64; POWERS]; POWERS] = {
-    let mut rows = [[0.0; POWERS]; POWERS];
-    let mut n = 0;
-    while n < POWERS {
-        rows[n][0] = 1.0;
-        let mut k = 1;
-        while k <= n {
-            rows[n][k] = rows[n - 1][k - 1] + rows[n - 1][k];
-            k += 1;
-        }
-        n += 1;
-    }
-    rows
-};
-
-/// Makes up for the rounding of sums of non-negative terms.
-const UP: f64 = 1.0 + 256.0 * f64::EPSILON;
+/// Roundings in a coefficient or its radius: each is a sum of products built in at most 16 operations, and with
+/// throttles of size s their absolute values add up to at most 2^8 s^8 times the sum of absolute coefficients.
+const ROUNDING: f64 = 4096.0 * f64::EPSILON;
 
 impl Expansion {
-    /// About the cell `centre` +- `half`, inside [0, 1].
-    pub(super) fn new(monomials: &Monomials, centre: [f64; 2], half: [f64; 2]) -> Self {
-        let (mut p, degree) = (monomials.coefficients, monomials.degree);
-        for row in p.iter_mut().take(degree[0] + 1) {
-            for start in 0..degree[1] {
-                for j in (start..degree[1]).rev() {
-                    row[j] += centre[1] * row[j + 1];
-                }
+    /// Over a box.
+    pub(super) fn new(monomials: &[Monomials; 2], over: [Interval; 2]) -> Self {
+        let centre = over.map(|range| 0.5 * (range.low + range.high));
+        let half = [0, 1].map(|k| (over[k].high - centre[k]).max(centre[k] - over[k].low).next_up());
+        let size = over.map(Interval::magnitude).into_iter().fold(1.0, f64::max);
+        let power = (1..2 * POWERS - 1).fold(1.0, |power, _| power * size);
+        Expansion(monomials.each_ref().map(|monomials| {
+            let rounding = ROUNDING * monomials.size * power;
+            let centre = monomials.shifted(monomials.coefficients, centre);
+            let absolute = centre.map(|row| row.map(f64::abs));
+            let mut radius = monomials.shifted(absolute, half);
+            for (radius, absolute) in radius.iter_mut().flatten().zip(absolute.iter().flatten()) {
+                *radius += rounding - absolute;
             }
-        }
-        for start in 0..degree[0] {
-            for i in (start..degree[0]).rev() {
-                let above = p[i + 1];
-                for (value, above) in p[i].iter_mut().zip(above) {
-                    *value += centre[0] * above;
-                }
+            Coefficient {
+                centre,
+                radius,
+                columns: monomials.columns,
             }
-        }
-        Expansion {
-            p,
-            degree,
-            half,
-            slack: monomials.size * 4096.0 * f64::EPSILON,
-        }
+        }))
     }
 
-    /// The quantity over the cell.
-    pub(super) fn value(&self) -> Taylor {
-        self.derivative([0, 0])
-    }
-
-    /// The derivatives by u and by l over the cell.
-    pub(super) fn gradient(&self) -> [Taylor; 2] {
-        [self.derivative([1, 0]), self.derivative([0, 1])]
-    }
-
-    /// The derivative of the given orders, each 0 or 1, over the cell.
-    fn derivative(&self, order: [usize; 2]) -> Taylor {
-        let [hu, hl] = self.half;
-        let [du, dl] = order;
-        let mut low = [[0.0; 3]; 3];
-        let mut rest = self.slack;
-        let (mut size_u, mut factor_u) = (1.0, 1.0);
-        for i in du..=self.degree[0] {
-            let (mut size, mut factor) = (size_u, factor_u);
-            for j in dl..=self.degree[1] {
-                let term = self.p[i][j] * size * factor;
-                if i - du + j - dl <= 2 {
-                    low[i - du][j - dl] = term;
-                } else {
-                    rest += term.abs();
-                }
-                size *= hl;
-                factor = if dl == 1 { (j + 1) as f64 } else { 1.0 } * factor_u;
+    /// The sums over i + j >= `least` of F^(i,j)(t) / (i! j!) vu^i vl^j.
+    pub(super) fn sums(&self, v: &[Taylor; 2], least: usize) -> [Taylor; 2] {
+        let powers = v.each_ref().map(|v| {
+            let mut powers = [Taylor::exact(1.0); POWERS];
+            for i in 1..POWERS {
+                powers[i] = powers[i - 1].product(v);
             }
-            size_u *= hu;
-            factor_u = if du == 1 { (i + 1) as f64 } else { 1.0 };
-        }
-        let coefficients = [low[0][0], low[1][0], low[0][1], low[2][0], low[1][1], low[0][2]];
-        Taylor::new(coefficients, rest * UP)
-    }
-
-    /// The second derivatives and the higher terms within `reach` of the centre.
-    pub(super) fn curvature(&self, reach: [f64; 2]) -> Curvature {
-        let mut curvature = Curvature {
-            centre: [0.0; 3],
-            radius: [0.0; 3],
-            higher: [[0.0; POWERS]; POWERS],
-        };
-        for i in 0..=self.degree[0] {
-            for j in 0..=self.degree[1] {
-                if i + j < 2 {
-                    continue;
-                }
-                let [centre, radius] = self.coefficient([i, j], reach);
-                if i + j == 2 {
-                    (curvature.centre[j], curvature.radius[j]) = (centre, radius);
-                } else {
-                    curvature.higher[i][j] = centre.abs() + radius;
-                }
+            powers
+        });
+        self.0.each_ref().map(|of| {
+            let mut sum = Taylor::exact(0.0);
+            for (i, &columns) in of.columns.iter().enumerate() {
+                let known = of.centre[i].iter().zip(&of.radius[i]).zip(&powers[1]);
+                let known = known.take(columns).skip(least.saturating_sub(i));
+                let row = known.fold(Taylor::exact(0.0), |row, ((centre, radius), power)| {
+                    row.plus(&power.times(*centre, *radius))
+                });
+                sum = sum.plus(&powers[0][i].product(&row));
             }
-        }
-        curvature
-    }
-
-    /// Bounds of the absolute derivatives by u and by l within `reach` of the centre.
-    pub(super) fn slopes(&self, reach: [f64; 2]) -> [f64; 2] {
-        [[1, 0], [0, 1]].map(|order| {
-            let [centre, radius] = self.coefficient(order, reach);
-            centre.abs() + radius
+            sum
         })
     }
 
-    /// F^(i,j) / (i! j!) within `reach` of the centre: its value there and how far it may go from
-    /// it.
-    fn coefficient(&self, [i, j]: [usize; 2], reach: [f64; 2]) -> [f64; 2] {
-        let mut radius = self.slack;
-        let mut size_u = 1.0;
-        for (m, (row, binomials)) in self.p.iter().zip(&BINOMIAL).enumerate().skip(i) {
-            if m > self.degree[0] {
-                break;
-            }
-            let mut size = size_u * binomials[i];
-            for n in j..=self.degree[1] {
-                if m > i || n > j {
-                    radius += row[n].abs() * size * BINOMIAL[n][j];
-                }
-                size *= reach[1];
-            }
-            size_u *= reach[0];
-        }
-        [self.p[i][j], radius * UP]
-    }
-}
-
-/// Powers of two functions up to the fourth total degree, `[exponent of the first][of the second]`.
-pub(super) type Powers = [[Taylor; POWERS]; POWERS];
-
-/// Products of `v` up to the total degree `degree`.
-pub(super) fn powers(v: &[Taylor; 2], degree: usize) -> Powers {
-    let mut powers = [[Taylor::exact(0.0); POWERS]; POWERS];
-    powers[0][0] = Taylor::exact(1.0);
-    for total in 1..=degree {
-        for i in 0..=total {
-            let j = total - i;
-            powers[i][j] = match (i, j) {
-                (1, 0) => v[0],
-                (0, 1) => v[1],
-                (_, 0) => powers[i - 1][0].product(&v[0]),
-                _ => powers[i][j - 1].product(&v[1]),
-            };
-        }
-    }
-    powers
-}
-
-/// F^(i,j)(t) / (i! j!) for i + j >= 2 as functions over the cell, by exponents; `None` where they
-/// vanish.
-pub(super) type Derivatives = [[Option<Taylor>; POWERS]; POWERS];
-
-impl Expansion {
-    /// The higher derivatives at a point t; `offset` are the [`powers`] of its distance from the
-    /// centre, of the second degree at least.
-    pub(super) fn derivatives(&self, offset: &Powers) -> Derivatives {
-        let mut derivatives = [[None; POWERS]; POWERS];
-        for (i, row) in derivatives.iter_mut().enumerate().take(self.degree[0] + 1) {
-            for (j, slot) in row.iter_mut().enumerate().take(self.degree[1] + 1) {
-                if i + j < 2 {
-                    continue;
-                }
-                let mut sum = Taylor::ball(self.slack);
-                let mut present = false;
-                for m in i..=self.degree[0] {
-                    for n in j..=self.degree[1] {
-                        let factor = self.p[m][n] * (BINOMIAL[m][i] * BINOMIAL[n][j]);
-                        if factor != 0.0 {
-                            present = true;
-                            let radius = factor.abs() * f64::EPSILON;
-                            sum = sum.plus(&offset[m - i][n - j].times(factor, radius));
-                        }
-                    }
-                }
-                *slot = present.then_some(sum);
-            }
-        }
-        derivatives
-    }
-}
-
-/// G(t; v) from the derivatives at t and the [`powers`] of v of the fourth degree.
-pub(super) fn beyond_linear(derivatives: &Derivatives, v: &Powers) -> Taylor {
-    let mut sum = Taylor::exact(0.0);
-    for (derivatives, v) in derivatives.iter().zip(v) {
-        for (derivative, v) in derivatives.iter().zip(v) {
-            if let Some(derivative) = derivative {
-                sum = sum.plus(&derivative.product(v));
-            }
-        }
-    }
-    sum
-}
-
-impl Curvature {
-    /// True where the bounds of [`Curvature::remainder`] say little of an offset of this `size`:
-    /// what they leave open does not shrink with the cell.
-    pub(super) fn is_vague(&self, size: [f64; 2]) -> bool {
-        const SHARE: f64 = 0.03;
-        let squares = [size[0] * size[0], size[0] * size[1], size[1] * size[1]];
-        let (mut known, mut open) = (0.0, self.higher_terms(size));
-        for ((square, centre), radius) in squares.iter().zip(&self.centre).zip(&self.radius) {
-            known += centre.abs() * square;
-            open += radius * square;
-        }
-        open > SHARE * known
-    }
-
-    /// G(t; v) for t within reach of the centre. `squares` are vu2, vu vl, vl2 and `size` bounds
-    /// |vu|, |vl|.
-    pub(super) fn remainder(&self, squares: &[Taylor; 3], size: [f64; 2]) -> Taylor {
-        let mut sum = Taylor::ball(self.higher_terms(size));
-        for ((square, &centre), &radius) in squares.iter().zip(&self.centre).zip(&self.radius) {
-            sum = sum.plus(&square.times(centre, radius));
-        }
-        sum
-    }
-
-    fn higher_terms(&self, [size_u, size_l]: [f64; 2]) -> f64 {
-        let mut sum = 0.0;
-        let mut power_u = 1.0;
-        for row in &self.higher {
-            let mut power = power_u;
-            for bound in row {
-                sum += bound * power;
-                power *= size_l;
-            }
-            power_u *= size_u;
-        }
-        sum * UP
-    }
-
-    /// How far the quantity may lie from a straight line over an offset v along one axis: F'' v2 /
-    /// 8.
-    pub(super) fn bend(&self, axis: usize, v: f64) -> f64 {
-        let half = self.centre[2 * axis].abs() + self.radius[2 * axis];
-        0.25 * half * v * v * UP
+    /// Bound of the absolute derivative of this order along one axis, over its factorial, of f or of Q.
+    pub(super) fn along(&self, quantity: usize, axis: usize, order: usize) -> f64 {
+        let of = &self.0[quantity];
+        let mut orders = [0; 2];
+        orders[axis] = order;
+        let [i, j] = orders;
+        of.centre[i][j].abs() + of.radius[i][j]
     }
 }

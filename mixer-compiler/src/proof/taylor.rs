@@ -157,25 +157,6 @@ impl Taylor {
         self
     }
 
-    /// The function over a part of the cell: with `offset + width * a` for a, or for b if `second`.
-    #[must_use]
-    pub(crate) fn restricted(&self, second: bool, offset: f64, width: f64) -> Self {
-        let mut part = *self;
-        let square = if second { self.bb } else { self.aa };
-        let slope = if second { self.b } else { self.a };
-        part.c += (slope + square * offset) * offset;
-        let slope = (slope + 2.0 * square * offset) * width;
-        part.ab *= width;
-        if second {
-            part.a += self.ab * offset;
-            (part.b, part.bb) = (slope, square * width * width);
-        } else {
-            part.b += self.ab * offset;
-            (part.a, part.aa) = (slope, square * width * width);
-        }
-        part.widened(4.0 * ROUNDING * self.magnitude())
-    }
-
     fn linear(&self) -> f64 {
         self.a.abs() + self.b.abs()
     }

@@ -249,3 +249,52 @@ fn delivered_efforts_do_not_look_missed() {
         );
     }
 }
+
+/// Cells at the corners of the box, where both throttles are limited, and an inverse that is off by up to a tenth: what
+/// the runtime does at drawn throttles of the cell is within the bound.
+#[test]
+fn limited_corners_are_bounded() {
+    let compiled = compiled(airframe_text("airframes/isae-x8.toml"));
+    let (airframe, pair) = (&compiled.airframe, &compiled.pair);
+    let correction = CorrectionBounds::new(airframe, &compiled.tables.corrections);
+    let [low, high] = [airframe.throttle.min, airframe.throttle.max];
+    let mut next = numbers();
+    let (mut bounded, mut limited, mut nearest) = (0, 0, 0.0f64);
+    for round in 0..600 {
+        let mut tables = compiled.tables.clone();
+        for coefficient in tables.inverse.coefficients.iter_mut().flatten() {
+            *coefficient *= 1.0 + 0.1 * next() as f32;
+        }
+        let half = 0.05 * next().abs().powi(3) + 1e-6;
+        let corner = [round & 1, round >> 1 & 1].map(|side| if side == 1 { high - half } else { low + half });
+        let map = tables.map();
+        let subject = Subject::new(airframe, &map, &correction);
+        let bound = subject.residual(&ThrottleCell {
+            centre: corner,
+            half: [half; 2],
+        });
+        bounded += u32::from(bound.iter().all(|bound| bound.is_finite()));
+        for _ in 0..20 {
+            let throttles = corner.map(|centre| pair.clamp(centre + 1.02 * half * next().clamp(-0.98, 0.98)));
+            let efforts = pair.efforts(throttles);
+            let found = tables
+                .throttles(efforts.map(|effort| effort as f32))
+                .map(f64::from);
+            limited += u32::from(found.iter().all(|found| *found <= low || *found >= high));
+            let given = pair.efforts(found);
+            for k in 0..2 {
+                let missed = (given[k] - efforts[k]).abs();
+                assert!(
+                    missed <= bound[k],
+                    "{round} {throttles:?} {found:?}: {missed} {bound:?}"
+                );
+                nearest = nearest.max(missed / bound[k]);
+            }
+        }
+    }
+    // Bounds that are never nearly met would hold by being useless.
+    assert!(
+        bounded > 500 && limited > 200 && nearest > 0.5,
+        "{bounded} {limited} {nearest}"
+    );
+}
