@@ -2,8 +2,8 @@
 #![allow(missing_docs)]
 
 use cargo_mixer::commands::golden::compare;
-use mixer_compiler::vectors::{self, Kind, Vector};
 use mixer_files::golden::outputs;
+use mixer_files::vectors::{self, Kind, Vector};
 use mixer_rt::{Conditions, Health, Wrench};
 use mixer_tests::physics::Physics;
 use mixer_tests::{airframes, golden};

@@ -25,7 +25,6 @@ mod scale;
 mod selection;
 pub mod spec;
 pub mod tables;
-pub mod vectors;
 
 use airframe::Airframe;
 use allocation::{closed_form, thrust_range};

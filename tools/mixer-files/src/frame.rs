@@ -8,8 +8,8 @@ use mixer_compiler::airframe::{Spin, name_of_file};
 use mixer_facts::hover;
 use mixer_identify::air::Air;
 
-use crate::params::Stack;
 use crate::schema::DIRECTIVE;
+use crate::stacks::stack::Stack;
 
 /// A frame of coaxial pairs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

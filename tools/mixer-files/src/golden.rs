@@ -4,8 +4,10 @@
 //! `NAME.vectors.csv`, setpoints with the bits that the mixer gives; `NAME.rotors-out.csv`, the
 //! same with rotors out.
 
-use mixer_compiler::{Compiled, vectors};
+use mixer_compiler::Compiled;
 use mixer_facts::Checked;
+
+use crate::vectors;
 
 mod table;
 

@@ -2,20 +2,17 @@
 //!
 //! ```text
 //! PX4's CA_ROTOR*, ArduPilot's FRAME_*                                 parameters.rs
-//!   -> rotors: channel, place, axis, spin                              px4.rs, ardupilot.rs, betaflight.rs
+//!   -> rotors: channel, place, axis, spin                              ../stacks/*/import.rs
 //!   -> what the outputs send, and to which motor                       outputs.rs
 //!   -> units: two rotors in one place, which is on top                 pairs.rs
 //!   -> what is said of single rotors and not used                      unused.rs
 //!   -> the airframe file, with what the parameters do not say named    text.rs
 //! ```
 
-mod ardupilot;
-pub(crate) mod betaflight;
-mod outputs;
+pub(crate) mod outputs;
 mod pairs;
-mod parameters;
-mod px4;
-mod rotors;
+pub(crate) mod parameters;
+pub(crate) mod rotors;
 mod text;
 mod unused;
 
@@ -27,11 +24,12 @@ use mixer_facts::checklist;
 use mixer_identify::pair_file::PairFile;
 
 use crate::params::bench_pulses;
-use crate::params::frames::COAXIAL_MIXER;
+use crate::stacks::ardupilot::frames::COAXIAL_MIXER;
+use crate::stacks::{ardupilot, betaflight, px4};
 pub use outputs::USUAL_US;
 use parameters::Parameters;
 use rotors::Imported;
-pub use rotors::Rotor;
+pub use rotors::{Rotor, Stated};
 
 /// What the parameters do not say.
 #[derive(Clone, Debug, Default)]
@@ -54,20 +52,6 @@ pub struct Import {
     pub text: String,
     /// Assumptions, and settings that the parameters lack.
     pub notes: Vec<String>,
-}
-
-/// What a flight stack's parameters state of the vehicle that has them.
-#[derive(Clone, Debug)]
-pub struct Stated {
-    /// The rotors; places of ArduPilot's are those of arms of 1 m. `None` with the frame class of
-    /// this mixer, whose motors are those of the airframe that it was compiled of.
-    pub rotors: Option<Vec<Rotor>>,
-    /// Pins of ArduPilot's board, from 1, each with the motor, from 0, that it drives.
-    pub pins: Vec<(usize, usize)>,
-    /// Pulse widths of throttle 0 and 1, microseconds; DShot has none.
-    pub pulses_us: Option<[f64; 2]>,
-    /// Whether the motors are driven by DShot.
-    pub is_dshot: bool,
 }
 
 /// Reads what [`import`] begins with.
@@ -137,7 +121,7 @@ pub fn import(file: &Source, pair: Option<&Source>, options: &Options<'_>) -> Re
 
 fn read(file: &Source, arm_m: Option<f64>) -> Result<Imported, String> {
     let mut imported = match kind::of(&file.text) {
-        Kind::Betaflight => betaflight::read(file, arm_m)?,
+        Kind::Betaflight => betaflight::import::read(file, arm_m)?,
         other @ (Kind::Airframe | Kind::Pair | Kind::Foreign(_)) => {
             return Err(format!("{}: this is {}", file.name, other.told()));
         }
@@ -151,9 +135,9 @@ fn read(file: &Source, arm_m: Option<f64>) -> Result<Imported, String> {
 fn of_parameters(file: &Source, arm_m: Option<f64>) -> Result<Imported, String> {
     let parameters = Parameters::read(file)?;
     let mut imported = if parameters.has("CA_ROTOR_COUNT") || parameters.has("CA_ROTOR0_PX") {
-        px4::read(&parameters)?
-    } else if parameters.has("FRAME_CLASS") || ardupilot::is_quadplane(&parameters) {
-        ardupilot::read(&parameters, arm_m)?
+        px4::import::read(&parameters)?
+    } else if parameters.has("FRAME_CLASS") || ardupilot::import::is_quadplane(&parameters) {
+        ardupilot::import::read(&parameters, arm_m)?
     } else {
         return Err(format!(
             "{}: no rotors: neither CA_ROTOR_COUNT and CA_ROTOR0_PX.. (PX4 1.13 or later) nor FRAME_CLASS or Q_FRAME_CLASS \

@@ -28,3 +28,5 @@ pub mod params;
 pub mod report;
 pub mod review;
 pub mod schema;
+mod stacks;
+pub mod vectors;

@@ -1,67 +1,20 @@
 //! An airframe's parameters as files that a flight stack loads.
 
-mod ardupilot;
-mod betaflight;
-pub mod frames;
-mod parameter;
-mod px4;
+pub(crate) mod parameter;
 pub(crate) mod read;
-mod stack;
+pub(crate) mod writer;
 
 use std::fmt::Write as _;
 
 use mixer_compiler::Compiled;
-use mixer_compiler::diagnostic::wrapped;
+use mixer_compiler::diagnostic::{printable_lines, wrapped};
 
 pub use crate::params::parameter::bench_pulses;
-use crate::params::parameter::{PULSES_US, Parameter, Parameters, Value};
-use crate::params::px4::Currents;
-pub use crate::params::stack::Stack;
-use mixer_compiler::diagnostic::printable_lines;
-
-/// Which parameters, and in which form.
-#[derive(Clone, Copy, Debug)]
-pub struct Options {
-    /// The flight stack.
-    pub stack: Stack,
-    /// The form of the file.
-    pub format: Format,
-    /// Whether they are for the stack's own mixer instead of this one.
-    pub own: bool,
-    /// Pulse widths of throttle 0 and 1 on the bench, microseconds; without them those that the
-    /// airframe remembers.
-    pub pulses_us: Option<[f64; 2]>,
-}
-
-impl Options {
-    /// For this mixer, as a ground station loads them, without pulse widths.
-    pub fn of(stack: Stack) -> Self {
-        Options {
-            stack,
-            format: Format::GroundStation,
-            own: false,
-            pulses_us: None,
-        }
-    }
-}
-
-/// The form of the file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Format {
-    /// For a ground station: QGroundControl's .params, ArduPilot's .parm, lines of Betaflight's CLI.
-    GroundStation,
-    /// A start script of PX4's simulator.
-    Simulator,
-}
-
-impl Format {
-    /// All, each with its word on the command line and what it is.
-    #[rustfmt::skip]
-    pub const ALL: [(Format, &'static str, &'static str); 2] = [
-        (Format::GroundStation, "parameters", "A file for a ground station: QGroundControl's .params, ArduPilot's .parm, lines of Betaflight's CLI"),
-        (Format::Simulator, "airframe", "A start script of PX4's simulator"),
-    ];
-}
+use crate::params::parameter::{PULSES_US, Parameter, Parameters};
+use crate::params::writer::Writer;
+pub use crate::params::writer::{Format, Options};
+pub use crate::stacks::stack::Stack;
+use crate::stacks::{px4, writer};
 
 /// A stack's parameters for an airframe.
 #[derive(Clone, Debug)]
@@ -82,24 +35,12 @@ pub fn params(compiled: &Compiled, file: &str, options: &Options) -> Result<Para
     let Parameters { list, notes } = parameters(options, compiled)?;
     let mut head = header(compiled, file, options, &notes);
     let mut post = None;
+    let Writer { frame, line, .. } = writer(options.stack);
     let text = match (options.stack, options.format) {
-        (Stack::Px4, Format::GroundStation) => {
-            head.push_str("#\n# Vehicle-Id Component-Id Name Value Type\n");
-            head + &lines(&list, ground_station)
-        }
-        (Stack::Ardupilot, Format::GroundStation) => {
-            head + &lines(&list, |parameter| {
-                format!("{},{}", parameter.name, parameter.value)
-            })
-        }
-        (Stack::Betaflight, Format::GroundStation) => {
-            head + &lines(&list, |parameter| match parameter.value {
-                Value::Line => parameter.name.clone(),
-                value => format!("set {} = {value}", parameter.name),
-            }) + "save\n"
-        }
-        (Stack::Ardupilot | Stack::Betaflight, Format::Simulator) => {
-            return Err("--format airframe is for PX4".to_owned());
+        (_, Format::GroundStation) => {
+            let [before, behind] = frame;
+            head.push_str(before);
+            head + &lines(&list, line) + behind
         }
         (Stack::Px4, Format::Simulator) => {
             post = (!options.own).then_some(START);
@@ -112,6 +53,7 @@ pub fn params(compiled: &Compiled, file: &str, options: &Options) -> Result<Para
                  {defaults}"
             )
         }
+        (_, Format::Simulator) => return Err("--format airframe is for PX4".to_owned()),
     };
     Ok(Params { text, post, notes })
 }
@@ -127,40 +69,21 @@ fn parameters(options: &Options, compiled: &Compiled) -> Result<Parameters, Stri
             "--pwm-range {low},{high}: pulse widths in microseconds from {least} to {most}, as 1000,2000"
         ));
     }
-    let currents = match options.format {
-        Format::GroundStation => Currents::Measured,
-        Format::Simulator => Currents::Simulated,
-    };
-    match options.stack {
-        Stack::Px4 => px4::geometry(compiled, &mut all)?,
-        Stack::Ardupilot => ardupilot::geometry(compiled, options.own, &mut all),
-        Stack::Betaflight => betaflight::geometry(compiled, &mut all)?,
-    }
-    match (options.stack, options.own) {
-        (Stack::Px4, true) => px4::own(compiled, currents, &mut all),
-        (Stack::Px4, false) => px4::settings(compiled, currents, &mut all),
-        (Stack::Ardupilot, true) => ardupilot::own(compiled, &mut all),
-        (Stack::Ardupilot, false) => ardupilot::settings(compiled, &mut all),
-        (Stack::Betaflight, true) => betaflight::own(compiled, &mut all),
-        (Stack::Betaflight, false) => betaflight::settings(compiled, &mut all),
-    }
-    let pulses_us = options.pulses_us.or_else(|| bench_pulses(&compiled.airframe));
-    match (options.format, pulses_us, options.stack) {
+    let writer = writer(options.stack);
+    (writer.geometry)(compiled, options, &mut all)?;
+    let settings = if options.own { writer.own } else { writer.settings };
+    settings(compiled, options, &mut all);
+    match (
+        options.format,
+        options.pulses_us.or_else(|| bench_pulses(&compiled.airframe)),
+    ) {
         // The simulator's outputs have no pulse widths.
-        (Format::Simulator, ..) => px4::simulated(compiled, &mut all),
-        (_, Some(pulses), Stack::Px4) => px4::pulses(compiled, pulses, &mut all),
-        (_, Some(pulses), Stack::Ardupilot) => ardupilot::pulses(pulses, &mut all),
-        (_, Some(pulses), Stack::Betaflight) => betaflight::pulses(pulses, &mut all),
-        (_, None, stack) => {
-            let names = match stack {
-                Stack::Px4 => "PWM_MAIN_MINn and PWM_MAIN_MAXn (PWM_AUX_MINn, PWM_AUX_MAXn)",
-                Stack::Ardupilot => "MOT_PWM_MIN and MOT_PWM_MAX",
-                Stack::Betaflight => "min_command and max_throttle, which DShot does not use,",
-            };
-            all.note(format!(
-                "{names} are missing: --pwm-range gives them, the pulse widths of throttle 0 and 1 on the bench"
-            ));
-        }
+        (Format::Simulator, _) => px4::params::simulated(compiled, &mut all),
+        (Format::GroundStation, Some(pulses)) => (writer.pulses)(compiled, pulses, &mut all),
+        (Format::GroundStation, None) => all.note(format!(
+            "{} are missing: --pwm-range gives them, the pulse widths of throttle 0 and 1 on the bench",
+            writer.pulse_names
+        )),
     }
     // The simulator's outputs are written.
     if options.format == Format::GroundStation {
@@ -193,11 +116,8 @@ fn header(compiled: &Compiled, file: &str, options: &Options, notes: &[String]) 
     let borrowed = compiled.airframe.pair.borrowed();
     let beware = borrowed.map(|told| format!("beware: {told}"));
     if !options.own {
-        let (what, unit) = match options.stack {
-            Stack::Px4 => ("A setpoint of 1", compiled.scale()),
-            Stack::Ardupilot => ("A setpoint of 1", compiled.ardupilot_scale()),
-            Stack::Betaflight => ("A PID sum of 1000, or full stick,", compiled.betaflight_scale()),
-        };
+        let (what, unit) = writer(options.stack).unit;
+        let unit = unit(compiled);
         let (roll, pitch, yaw, thrust) = (unit.roll_nm, unit.pitch_nm, unit.yaw_nm, unit.thrust_n);
         let _ = writeln!(
             head,
@@ -228,16 +148,6 @@ fn lines(list: &[Parameter], line: impl Fn(&Parameter) -> String) -> String {
         text.push('\n');
     }
     text
-}
-
-/// Of QGroundControl: vehicle, component, name, value, MAV_PARAM_TYPE.
-fn ground_station(parameter: &Parameter) -> String {
-    let Parameter { name, value, .. } = parameter;
-    let kind = match value {
-        Value::Whole(_) | Value::Line => 6,
-        Value::Real(_) => 9,
-    };
-    format!("1\t1\t{name}\t{value}\t{kind}")
 }
 
 /// PX4's own modules have been started when this runs.

@@ -2,8 +2,8 @@
 //! the vehicle.
 //!
 //! ```text
-//! bytes of a log -> topics and parameters        log.rs; ulog.rs, dataflash.rs
-//!   -> a flight, in one form for both stacks     flight.rs; px4.rs, ardupilot.rs
+//! bytes of a log -> topics and parameters        log.rs; ../stacks/{px4/ulog,ardupilot/dataflash}.rs
+//!   -> a flight, in one form for both stacks     flight.rs; ../stacks/*/log.rs
 //!   -> one of this vehicle, or refused           read.rs
 //!   -> instants in the air, and the model's wrench at the logged throttles    rows.rs
 //!   -> what that says of the model               compare.rs: thrust.rs, rotors.rs, saturated.rs; result.rs
@@ -13,13 +13,10 @@
 //!
 //! Nothing here reads or writes files.
 
-mod ardupilot;
 mod compare;
-mod dataflash;
-mod flight;
-mod log;
-mod px4;
-mod read;
+pub(crate) mod flight;
+pub(crate) mod log;
+pub(crate) mod read;
 mod result;
 mod rotors;
 mod rows;
@@ -27,7 +24,6 @@ mod saturated;
 mod scaled;
 mod text;
 mod thrust;
-mod ulog;
 mod warnings;
 
 pub use crate::review::flight::Flight;

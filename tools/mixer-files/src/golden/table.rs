@@ -4,8 +4,8 @@
 
 use std::fmt::Write as _;
 
+use crate::vectors::Vector;
 use mixer_compiler::Compiled;
-use mixer_compiler::vectors::Vector;
 use mixer_rt::{Health, Wrench};
 
 /// A row per vector, with all rotors.

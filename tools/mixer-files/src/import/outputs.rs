@@ -60,14 +60,14 @@ fn outputs(parameters: &Parameters) -> Vec<Output> {
 }
 
 /// The pins of ArduPilot's board that drive a motor, from 1, each with the motor, from 0.
-pub(super) fn servos(parameters: &Parameters) -> Vec<(usize, usize)> {
+pub(crate) fn servos(parameters: &Parameters) -> Vec<(usize, usize)> {
     let outputs = outputs(parameters).into_iter();
     let servos = outputs.filter(|output| output.bank == "SERVO");
     servos.map(|output| (output.pin, output.motor)).collect()
 }
 
 /// That pins are not motors, where they are in another order.
-pub(super) fn order(parameters: &Parameters) -> Option<String> {
+pub(crate) fn order(parameters: &Parameters) -> Option<String> {
     let outputs = outputs(parameters);
     let Output { motor, name, .. } = outputs.iter().find(|output| output.pin != output.motor + 1)?;
     Some(format!(
@@ -77,7 +77,7 @@ pub(super) fn order(parameters: &Parameters) -> Option<String> {
 }
 
 /// Motors, from 0, whose pins have pulses of their own, each with the widths of throttle 0 and 1, us.
-pub(super) fn own_pulses(parameters: &Parameters) -> Vec<(usize, [f64; 2])> {
+pub(crate) fn own_pulses(parameters: &Parameters) -> Vec<(usize, [f64; 2])> {
     let outputs = outputs(parameters).into_iter();
     let pins = outputs.filter(|output| output.bank.starts_with(PULSED));
     pins.map(|Output { bank, pin, motor, .. }| {
@@ -95,7 +95,7 @@ const MOTORS: [&str; 2] = ["MOT_", "Q_M_"];
 
 /// Whether the motors are driven by DShot: ArduPilot's `MOT_PWM_TYPE` of 4 and more, PX4's `PWM_MAIN_TIMn` of -2 and
 /// less.
-pub(super) fn is_dshot(parameters: &Parameters) -> bool {
+pub(crate) fn is_dshot(parameters: &Parameters) -> bool {
     let is_timer = |name: &&str| {
         let mut numbers = ["PWM_MAIN_TIM", "PWM_AUX_TIM"]
             .into_iter()
@@ -117,7 +117,7 @@ fn is_number(text: &str) -> bool {
 /// The pulse widths of throttle 0 and 1, of several that a file has those furthest from the usual;
 /// of all pins where no function is said. DShot has none. Those that other parameters say are not looked at, and
 /// are `Err`, a note (`AP_MotorsMulticopter::get_pwm_output_min`, `update_throttle_range`).
-pub(super) fn pulses(parameters: &Parameters) -> Result<Option<Pulses>, String> {
+pub(crate) fn pulses(parameters: &Parameters) -> Result<Option<Pulses>, String> {
     for motors in MOTORS {
         for (end, elsewhere) in [("TYPE", 8.0), ("MAX", 0.0), ("MIN", 0.0)] {
             let name = format!("{motors}PWM_{end}");
@@ -174,7 +174,7 @@ const POINTS: u32 = 20;
 
 impl Pulses {
     /// What it means that the vehicle's pulses of throttle 0 and 1 are not the bench's.
-    pub(super) fn told(&self, bench_us: [f64; 2], map: Option<&PairMap>) -> Option<String> {
+    pub(crate) fn told(&self, bench_us: [f64; 2], map: Option<&PairMap>) -> Option<String> {
         let [low, high] = bench_us;
         let on_bench =
             |throttle: f64| (self.us[0] + throttle * (self.us[1] - self.us[0]) - low) / (high - low);
@@ -202,7 +202,7 @@ impl Pulses {
 }
 
 /// The length of the arms, which `whose` file does not have.
-pub(super) fn arm(arm: Option<f64>, whose: &str) -> Result<f64, String> {
+pub(crate) fn arm(arm: Option<f64>, whose: &str) -> Result<f64, String> {
     match arm {
         Some(arm) if arm > 0.0 && arm.is_finite() => Ok(arm),
         Some(arm) => Err(format!("--arm {arm}: metres from the centre to a pair, above 0")),

@@ -11,7 +11,7 @@ use mixer_compiler::Source;
 
 /// The parameters of one file.
 #[derive(Debug)]
-pub(super) struct Parameters {
+pub(crate) struct Parameters {
     file: String,
     /// Each with its line.
     values: BTreeMap<String, (f64, u32)>,
@@ -21,7 +21,7 @@ pub(super) struct Parameters {
 const LONGEST_PIECE: usize = 80;
 
 impl Parameters {
-    pub(super) fn read(source: &Source) -> Result<Self, String> {
+    pub(crate) fn read(source: &Source) -> Result<Self, String> {
         let Source { name: file, text } = source;
         let lines = text.trim_start_matches('\u{feff}').lines().zip(1..);
         let statements = lines.flat_map(|(line, number)| {
@@ -86,23 +86,23 @@ impl Parameters {
     }
 
     /// Where a parameter is, `file:line`; the file where it is not there.
-    pub(super) fn place(&self, name: &str) -> String {
+    pub(crate) fn place(&self, name: &str) -> String {
         match self.values.get(name) {
             Some((_, line)) => format!("{}:{line}", self.file),
             None => self.file.clone(),
         }
     }
 
-    pub(super) fn count(&self) -> usize {
+    pub(crate) fn count(&self) -> usize {
         self.values.len()
     }
 
-    pub(super) fn has(&self, name: &str) -> bool {
+    pub(crate) fn has(&self, name: &str) -> bool {
         self.values.contains_key(name)
     }
 
     /// A value. Stacks hold single precision, of which these are the decimal digits.
-    pub(super) fn get(&self, name: &str) -> Option<f64> {
+    pub(crate) fn get(&self, name: &str) -> Option<f64> {
         // What is read is written back or named by `params`: nothing else may be read.
         #[cfg(test)]
         assert!(
@@ -114,24 +114,24 @@ impl Parameters {
     }
 
     /// A value, or the stack's default.
-    pub(super) fn or(&self, name: &str, default: f64) -> f64 {
+    pub(crate) fn or(&self, name: &str, default: f64) -> f64 {
         self.get(name).unwrap_or(default)
     }
 
     /// The names of all, in alphabetical order.
-    pub(super) fn names(&self) -> impl Iterator<Item = &str> {
+    pub(crate) fn names(&self) -> impl Iterator<Item = &str> {
         self.values.keys().map(String::as_str)
     }
 
     /// A whole number from 0, if it is one.
-    pub(super) fn whole(&self, name: &str) -> Option<usize> {
+    pub(crate) fn whole(&self, name: &str) -> Option<usize> {
         let value = self.get(name)?;
         (value >= 0.0 && value.fract() == 0.0 && value < 1e6).then_some(value as usize)
     }
 }
 
 /// The words of a line, without quotes and the flag of `param set -s`.
-pub(super) fn words(line: &str) -> Vec<&str> {
+pub(crate) fn words(line: &str) -> Vec<&str> {
     let separated = |c: char| c.is_whitespace() || matches!(c, ',' | '=' | '"' | '\'');
     let words = line.split(separated);
     words.filter(|word| !matches!(*word, "" | "-s")).collect()

@@ -3,7 +3,7 @@
 use mixer_compiler::airframe::Spin;
 
 /// The axis of a rotor that is not tilted.
-pub(super) const UPWARD: [f64; 3] = [0.0, 0.0, -1.0];
+pub(crate) const UPWARD: [f64; 3] = [0.0, 0.0, -1.0];
 
 /// A rotor of a flight stack.
 #[derive(Clone, Debug, PartialEq)]
@@ -11,7 +11,7 @@ pub struct Rotor {
     /// Output, from 0.
     pub channel: usize,
     /// Where it is said: `file:line`.
-    pub(super) place: String,
+    pub(crate) place: String,
     /// Forward, right, down, m.
     pub position_m: [f64; 3],
     /// Direction of the thrust, a unit vector.
@@ -19,25 +19,39 @@ pub struct Rotor {
     /// Seen from above.
     pub spin: Spin,
     /// What the stack has of it and the mixer does not use.
-    pub(super) own: Own,
+    pub(crate) own: Own,
+}
+
+/// What a flight stack's parameters state of the vehicle that has them.
+#[derive(Clone, Debug)]
+pub struct Stated {
+    /// The rotors; places of ArduPilot's are those of arms of 1 m. `None` with the frame class of
+    /// this mixer, whose motors are those of the airframe that it was compiled of.
+    pub rotors: Option<Vec<Rotor>>,
+    /// Pins of ArduPilot's board, from 1, each with the motor, from 0, that it drives.
+    pub pins: Vec<(usize, usize)>,
+    /// Pulse widths of throttle 0 and 1, microseconds; DShot has none.
+    pub pulses_us: Option<[f64; 2]>,
+    /// Whether the motors are driven by DShot.
+    pub is_dshot: bool,
 }
 
 /// Settings of single rotors: the mixer has one pair for all units.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Own {
+pub(crate) struct Own {
     /// Thrust per command, of any unit: PX4's `CA_ROTORn_CT`, the throttle factor of a `mmix`. 0 leaves a rotor out.
-    pub(super) thrust: f64,
+    pub(crate) thrust: f64,
     /// Yaw per command or per thrust, without its sign: `CA_ROTORn_KM`, the yaw factor of a `mmix`.
-    pub(super) yaw: f64,
+    pub(crate) yaw: f64,
     /// Pulse widths of throttle 0 and 1, us, where the rotor has its own.
-    pub(super) pulses_us: Option<[f64; 2]>,
+    pub(crate) pulses_us: Option<[f64; 2]>,
     /// Whether it turns both ways.
-    pub(super) is_reversible: bool,
+    pub(crate) is_reversible: bool,
 }
 
 impl Own {
     /// Of a stack that has none of it.
-    pub(super) const NONE: Own = Own {
+    pub(crate) const NONE: Own = Own {
         thrust: 1.0,
         yaw: 1.0,
         pulses_us: None,
@@ -47,54 +61,54 @@ impl Own {
 
 /// A motor that is no rotor of a pair.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct LeftOut {
+pub(crate) struct LeftOut {
     /// Its number in the stack, from 0.
-    pub(super) channel: usize,
+    pub(crate) channel: usize,
     /// Where it is said: `file:line`.
-    pub(super) place: String,
+    pub(crate) place: String,
     /// `is missing`.
-    pub(super) why: &'static str,
+    pub(crate) why: &'static str,
 }
 
 /// Two rotors in one place.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Unit {
-    pub(super) position_m: [f64; 3],
-    pub(super) axis: [f64; 3],
-    pub(super) upper_spin: Spin,
+pub(crate) struct Unit {
+    pub(crate) position_m: [f64; 3],
+    pub(crate) axis: [f64; 3],
+    pub(crate) upper_spin: Spin,
     /// Of the upper and of the lower rotor.
-    pub(super) channels: [usize; 2],
+    pub(crate) channels: [usize; 2],
 }
 
 /// Pulse widths of throttle 0 and 1.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Pulses {
+pub(crate) struct Pulses {
     /// Microseconds.
-    pub(super) us: [f64; 2],
+    pub(crate) us: [f64; 2],
     /// What the file says of them: `MOT_PWM_MAX is 1940`.
-    pub(super) said: Vec<String>,
+    pub(crate) said: Vec<String>,
 }
 
 /// Rotors and settings of a flight stack's files.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Imported {
+pub(crate) struct Imported {
     /// The stack and the frame, for people.
-    pub(super) origin: String,
-    pub(super) rotors: Vec<Rotor>,
+    pub(crate) origin: String,
+    pub(crate) rotors: Vec<Rotor>,
     /// The other motors of the stack.
-    pub(super) left_out: Vec<LeftOut>,
+    pub(crate) left_out: Vec<LeftOut>,
     /// What makes the rotors the stack's first motors.
-    pub(super) first_motors: &'static str,
+    pub(crate) first_motors: &'static str,
     /// Least and largest throttle, with the names of what says them.
-    pub(super) throttle: Option<([f64; 2], [String; 2])>,
+    pub(crate) throttle: Option<([f64; 2], [String; 2])>,
     /// What the motors' outputs send.
-    pub(super) pulses: Option<Pulses>,
+    pub(crate) pulses: Option<Pulses>,
     /// The battery's range, V.
-    pub(super) range_v: Option<[f64; 2]>,
+    pub(crate) range_v: Option<[f64; 2]>,
     /// The airmode with which the stack's controllers work, and why.
-    pub(super) airmode: Option<(&'static str, &'static str)>,
+    pub(crate) airmode: Option<(&'static str, &'static str)>,
     /// Assumptions, and settings that the files lack.
-    pub(super) notes: Vec<String>,
+    pub(crate) notes: Vec<String>,
 }
 
 impl Imported {
@@ -102,7 +116,7 @@ impl Imported {
     ///
     /// # Errors
     /// One that has rotors behind it: those would get other outputs.
-    pub(super) fn without_gap(&self) -> Result<Vec<String>, String> {
+    pub(crate) fn without_gap(&self) -> Result<Vec<String>, String> {
         let told = self.left_out.iter().map(|LeftOut { channel, place, why }| {
             match self.rotors.iter().find(|rotor| rotor.channel > *channel) {
                 Some(rotor) => Err(format!(

@@ -3,8 +3,8 @@
 
 use std::fmt::Write as _;
 
+use crate::vectors::{self, Vector};
 use mixer_compiler::Compiled;
-use mixer_compiler::vectors::{self, Vector};
 use mixer_rt::{Conditions, Health, Wrench};
 
 use crate::library::airframe::Airframe;

@@ -7,7 +7,7 @@ use mixer_compiler::airframe::Airframe;
 
 /// A parameter of a flight stack.
 #[derive(Clone, Debug)]
-pub(super) struct Parameter {
+pub(crate) struct Parameter {
     /// Its name.
     pub name: String,
     /// Its value.
@@ -18,7 +18,7 @@ pub(super) struct Parameter {
 
 /// A parameter's value, in the type that the stack holds it in.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Value {
+pub(crate) enum Value {
     /// A whole number.
     Whole(i32),
     /// A number in single precision.

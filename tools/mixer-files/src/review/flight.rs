@@ -1,9 +1,25 @@
 //! What a flight log says, in one form for both stacks.
 
-use crate::params::Stack;
 use mixer_compiler::airframe::Airframe;
 
-use crate::review::log::Series;
+use crate::import::rotors::Stated;
+use crate::review::log::{Log, Series};
+use crate::stacks::stack::Stack;
+
+/// A stack's log.
+pub(crate) struct Form {
+    /// How a file begins.
+    pub magic: &'static [u8],
+    /// How each of several logs in one file begins.
+    pub begin: &'static [u8],
+    /// The channels that a review needs, of a file's bytes.
+    pub log: fn(&[u8]) -> Log,
+    /// The flight; the pulse widths are those of throttle 0 and 1 on the bench, microseconds.
+    ///
+    /// # Errors
+    /// What the log lacks.
+    pub flight: fn(Log, &Stated, [f64; 2]) -> Result<Flight, String>,
+}
 
 /// Least and largest value that a row may have. The throttle of an output that is off may be below 0; force in m/s2 per
 /// axis, velocity in m/s, rate in rad/s, voltage in V where the airframe has no `[voltage]`, density in kg/m3; current in A beside charge in mA h;

@@ -6,34 +6,11 @@ use mixer_compiler::airframe::Airframe;
 
 use crate::import::{Stated, USUAL_US, stated};
 
-use crate::review::flight::Flight;
+use crate::review::flight::{Flight, Form};
 use crate::review::log::Log;
-use crate::review::{ardupilot, dataflash, px4, ulog};
+use crate::stacks::{ardupilot, px4};
 
-/// A stack's log.
-struct Form {
-    /// How a file begins.
-    magic: &'static [u8],
-    /// How each of several logs in one file begins.
-    begin: &'static [u8],
-    log: fn(&[u8]) -> Log,
-    flight: fn(Log, &Stated, [f64; 2]) -> Result<Flight, String>,
-}
-
-const FORMS: [Form; 2] = [
-    Form {
-        magic: ulog::MAGIC,
-        begin: ulog::MAGIC,
-        log: |bytes| ulog::read(bytes, px4::WANTED),
-        flight: px4::flight,
-    },
-    Form {
-        magic: dataflash::MAGIC,
-        begin: dataflash::BEGIN,
-        log: |bytes| dataflash::read(bytes, ardupilot::WANTED),
-        flight: ardupilot::flight,
-    },
-];
+const FORMS: [Form; 2] = [px4::log::FORM, ardupilot::log::FORM];
 
 /// How far a rotor may be from where the airframe file has it, over the mean arm: a third of the way to
 /// the next arm of a dodecahexa.

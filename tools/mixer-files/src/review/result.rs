@@ -2,10 +2,10 @@
 
 use serde::Serialize;
 
-use crate::params::Stack;
 use crate::review::rotors::{Speed, Stopped};
 use crate::review::saturated::Saturated;
 use crate::review::thrust::Thrust;
+use crate::stacks::stack::Stack;
 
 /// What the log does not have.
 #[derive(Clone, Copy, Debug, Default)]

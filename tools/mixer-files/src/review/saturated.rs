@@ -4,7 +4,7 @@ use mixer_compiler::Compiled;
 use mixer_rt::{Axis, Conditions, Health, Wrench};
 use serde::Serialize;
 
-use crate::params::Stack;
+use crate::stacks::stack::Stack;
 
 use crate::review::flight::Flight;
 use crate::review::log::median;

@@ -1,10 +1,10 @@
 //! ArduPilot's parameters: `FRAME_CLASS` and `FRAME_TYPE` name one of its frames. A QuadPlane has
 //! them with `Q_` before and `Q_M_` in place of `MOT_`.
 
-use super::outputs;
-use super::parameters::Parameters;
-use super::rotors::{Imported, Own, Rotor, UPWARD};
-use crate::params::frames::{COAXIAL_MIXER, LAYER_M, Layer, motors};
+use crate::import::outputs;
+use crate::import::parameters::Parameters;
+use crate::import::rotors::{Imported, Own, Rotor, UPWARD};
+use crate::stacks::ardupilot::frames::{COAXIAL_MIXER, LAYER_M, Layer, motors};
 
 /// ArduPilot's defaults.
 const SPIN_MIN: f64 = 0.15;
@@ -14,11 +14,11 @@ const SPIN_MAX: f64 = 0.95;
 const TILTS: [&str; 3] = ["Q_TILT_ENABLE", "Q_TILT_MASK", "Q_TAILSIT_ENABLE"];
 
 /// Where a QuadPlane's names begin with `Q_`.
-pub(super) fn is_quadplane(parameters: &Parameters) -> bool {
+pub(crate) fn is_quadplane(parameters: &Parameters) -> bool {
     parameters.has("Q_FRAME_CLASS") && !parameters.has("FRAME_CLASS")
 }
 
-pub(super) fn read(parameters: &Parameters, arm: Option<f64>) -> Result<Imported, String> {
+pub(crate) fn read(parameters: &Parameters, arm: Option<f64>) -> Result<Imported, String> {
     let [q, mot] = match is_quadplane(parameters) {
         true => ["Q_", "Q_M_"],
         false => ["", "MOT_"],

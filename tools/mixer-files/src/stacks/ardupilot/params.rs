@@ -3,8 +3,35 @@
 use mixer_compiler::airframe::Airmode;
 use mixer_compiler::{ARDUPILOT_MOST_SPIN_MIN as MOST_SPIN_MIN, Compiled};
 
-use crate::params::frames;
+use super::frames;
 use crate::params::parameter::{Parameters, curve, hundredths, on_curve};
+use crate::params::writer::Back::{Stays, ToldByImport, Written, WrittenOrNoted};
+use crate::params::writer::{Options, Read, Writer};
+
+/// See [`Writer`].
+pub(crate) const WRITER: Writer = Writer {
+    geometry,
+    settings,
+    own,
+    pulses,
+    pulse_names: "MOT_PWM_MIN and MOT_PWM_MAX",
+    frame: ["", ""],
+    line: |parameter| format!("{},{}", parameter.name, parameter.value),
+    unit: ("A setpoint of 1", Compiled::ardupilot_scale),
+    read: READ,
+};
+
+/// What becomes of the parameters that `import` reads.
+#[rustfmt::skip]
+const READ: &[Read] = &[
+    (Written, &["FRAME_CLASS", "FRAME_TYPE", "MOT_SPIN_MIN", "MOT_SPIN_MAX"]),
+    (WrittenOrNoted, &["MOT_PWM_MIN", "MOT_PWM_MAX", "MOT_BAT_VOLT_MAX", "MOT_BAT_VOLT_MIN"]),
+    (ToldByImport, &[
+        "Q_FRAME_CLASS", "Q_FRAME_TYPE", "Q_M_SPIN_MIN", "Q_M_SPIN_MAX", "Q_M_PWM_MIN", "Q_M_PWM_MAX", "Q_M_PWM_TYPE",
+        "Q_M_BAT_VOLT_MAX", "Q_M_BAT_VOLT_MIN", "Q_TILT_ENABLE", "Q_TILT_MASK", "Q_TAILSIT_ENABLE",
+    ]),
+    (Stays, &["SERVO#_FUNCTION", "MOT_PWM_TYPE"]),
+];
 
 /// ArduPilot's own `MOT_SPIN_ARM`.
 const SPIN_ARM: f64 = 0.1;
@@ -24,7 +51,7 @@ const GROUND_TEMPERATURE: &str = "BARO_GND_TEMP, the air's temperature, is set b
                                   power-off: without it the density goes by the barometer chip's, and 20 K more are 5 % too much thrust";
 
 /// ArduPilot's parameters where this mixer puts out the throttles.
-pub(crate) fn settings(compiled: &Compiled, all: &mut Parameters) {
+fn settings(compiled: &Compiled, _: &Options, all: &mut Parameters) {
     let airframe = &compiled.airframe;
     all.because("The mixer inverts the rotors' curve; all else that reads this is linear then.")
         .real("MOT_THST_EXPO", 0.0);
@@ -61,7 +88,7 @@ pub(crate) fn settings(compiled: &Compiled, all: &mut Parameters) {
 }
 
 /// ArduPilot's parameters where its own mixer puts out the throttles.
-pub(crate) fn own(compiled: &Compiled, all: &mut Parameters) {
+fn own(compiled: &Compiled, _: &Options, all: &mut Parameters) {
     let expo = hundredths(curve(compiled, true));
     all.because("Fitted to the thrust of the pair with both rotors alike.")
         .real("MOT_THST_EXPO", expo);
@@ -83,19 +110,20 @@ pub(crate) fn own(compiled: &Compiled, all: &mut Parameters) {
 
 /// `FRAME_CLASS` of this mixer; of ArduPilot's `own`, `FRAME_CLASS` and `FRAME_TYPE`, if a frame has these rotors on
 /// these outputs.
-pub(crate) fn geometry(compiled: &Compiled, own: bool, all: &mut Parameters) {
-    if !own {
+fn geometry(compiled: &Compiled, options: &Options, all: &mut Parameters) -> Result<(), String> {
+    if !options.own {
         all.because(
             "The motors class of the compiled airframe, which has its rotors; FRAME_TYPE has no effect.",
         )
         .whole("FRAME_CLASS", frames::COAXIAL_MIXER);
-        return;
+        return Ok(());
     }
     let Some((class, kind, name)) = frames::find(compiled) else {
-        return all.note(
+        all.note(
             "no FRAME_CLASS has these rotors on these outputs: ArduPilot has X and plus frames of 4 and 6 pairs, and Y6; of \
              those `cargo mixer new --outputs ardupilot` writes an airframe whose `channels` and spins are one's",
         );
+        return Ok(());
     };
     let [class, kind] = [class, kind].map(|value| i32::try_from(value).unwrap_or_default());
     all.because(format!(
@@ -103,10 +131,11 @@ pub(crate) fn geometry(compiled: &Compiled, own: bool, all: &mut Parameters) {
     ))
     .whole("FRAME_CLASS", class)
     .whole("FRAME_TYPE", kind);
+    Ok(())
 }
 
 /// Pulse widths of throttle 0 and 1, microseconds.
-pub(crate) fn pulses([low, high]: [f64; 2], all: &mut Parameters) {
+fn pulses(_: &Compiled, [low, high]: [f64; 2], all: &mut Parameters) {
     all.because("Pulse widths of throttle 0 and 1 on the bench.")
         .whole("MOT_PWM_MIN", low as i32)
         .whole("MOT_PWM_MAX", high as i32);

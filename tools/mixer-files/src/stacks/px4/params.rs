@@ -3,7 +3,35 @@
 use mixer_compiler::Compiled;
 use mixer_compiler::airframe::{Correction, Spin};
 
-use crate::params::parameter::{Parameters, curve, hundredths, on_curve};
+use crate::params::parameter::{Parameter, Parameters, Value, curve, hundredths, on_curve};
+use crate::params::writer::Back::{Moot, Stays, Written, WrittenOrNoted};
+use crate::params::writer::{Format, Options, Read, Writer};
+
+/// See [`Writer`].
+pub(crate) const WRITER: Writer = Writer {
+    geometry: |compiled, _, all| geometry(compiled, all),
+    settings,
+    own,
+    pulses,
+    pulse_names: "PWM_MAIN_MINn and PWM_MAIN_MAXn (PWM_AUX_MINn, PWM_AUX_MAXn)",
+    frame: ["#\n# Vehicle-Id Component-Id Name Value Type\n", ""],
+    line: ground_station,
+    unit: ("A setpoint of 1", Compiled::scale),
+    read: READ,
+};
+
+/// What becomes of the parameters that `import` reads.
+#[rustfmt::skip]
+const READ: &[Read] = &[
+    (Written, &[
+        "CA_AIRFRAME", "CA_ROTOR_COUNT", "CA_R_REV", "CA_ROTOR#_PX", "CA_ROTOR#_PY", "CA_ROTOR#_PZ", "CA_ROTOR#_AX", "CA_ROTOR#_AY",
+        "CA_ROTOR#_AZ", "CA_ROTOR#_CT", "CA_ROTOR#_KM",
+    ]),
+    (WrittenOrNoted, &["PWM_MAIN_MIN#", "PWM_MAIN_MAX#", "PWM_AUX_MIN#", "PWM_AUX_MAX#"]),
+    // Tilts, which a multirotor has none of; pulses before 1.13.
+    (Moot, &["CA_ROTOR#_TILT", "PWM_MIN", "PWM_MAX", "PWM_MAIN_MIN", "PWM_MAIN_MAX", "PWM_AUX_MIN", "PWM_AUX_MAX"]),
+    (Stays, &["*_FUNC#", "PWM_MAIN_TIM#", "PWM_AUX_TIM#", "BAT1_N_CELLS", "BAT1_V_EMPTY", "BAT1_V_CHARGED"]),
+];
 
 /// Most rotors that PX4 has parameters for.
 const MOST_ROTORS: usize = 12;
@@ -16,21 +44,12 @@ const LEAST_MANUAL_THRUST: f64 = 0.08;
 const MOST_SLOPE: f64 = 50.0;
 const MOST_OFFSET: f64 = 30.0;
 
-/// Where the currents come from that PX4's failure detector compares with the outputs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Currents {
-    /// From the ESCs.
-    Measured,
-    /// From PX4's simulator, which makes them up of the outputs.
-    Simulated,
-}
-
 /// PX4's parameters where this mixer puts out the throttles.
-pub(crate) fn settings(compiled: &Compiled, currents: Currents, all: &mut Parameters) {
+fn settings(compiled: &Compiled, options: &Options, all: &mut Parameters) {
     let airframe = &compiled.airframe;
     all.because("The mixer inverts the rotors' curve; the outputs would bend the throttles once more.")
         .real("THR_MDL_FAC", 0.0);
-    if currents == Currents::Measured {
+    if options.format == Format::GroundStation {
         all.because("With DShot: throttle 0 is that of the bench's pulses; PX4's default lifts all throttles by up to 0.055.")
             .real("DSHOT_MIN", 0.0);
     }
@@ -56,7 +75,7 @@ pub(crate) fn settings(compiled: &Compiled, currents: Currents, all: &mut Parame
     if hover.is_some_and(|hover| idle >= hover) {
         all.note("all rotors at idle lift the vehicle: MPC_THR_MIN is above MPC_THR_HOVER");
     }
-    failure_detection(compiled, currents, all);
+    failure_detection(compiled, options, all);
     if airframe.air.is_some() {
         all.note(DENSITY);
     }
@@ -71,7 +90,7 @@ const DENSITY: &str = "vehicle_air_data.rho goes by 15 C where no airspeed senso
 const MIDDLE: &str = "Throttle stick in the middle is hover thrust.";
 
 /// PX4's parameters where its own allocator puts out the throttles.
-pub(crate) fn own(compiled: &Compiled, currents: Currents, all: &mut Parameters) {
+fn own(compiled: &Compiled, options: &Options, all: &mut Parameters) {
     let factor = hundredths(curve(compiled, false));
     all.because("Fitted to the thrust of the pair with both rotors alike.")
         .real("THR_MDL_FAC", factor);
@@ -80,14 +99,14 @@ pub(crate) fn own(compiled: &Compiled, currents: Currents, all: &mut Parameters)
     let why = "THR_MDL_FAC's curve at the throttle that carries the weight at the reference voltage.";
     all.hover("MPC_THR_HOVER", hover, why);
     all.because(MIDDLE).whole("MPC_THR_CURVE", 0);
-    failure_detection(compiled, currents, all);
+    failure_detection(compiled, options, all);
 }
 
 /// The rotors for PX4's own allocator, which takes each as isolated and both of a pair as alike.
 ///
 /// # Errors
 /// More rotors than PX4 has parameters for.
-pub(crate) fn geometry(compiled: &Compiled, all: &mut Parameters) -> Result<(), String> {
+fn geometry(compiled: &Compiled, all: &mut Parameters) -> Result<(), String> {
     let airframe = &compiled.airframe;
     let count = airframe.rotors();
     if count > MOST_ROTORS {
@@ -129,7 +148,7 @@ pub(crate) fn simulated(compiled: &Compiled, all: &mut Parameters) {
 }
 
 /// Pulse widths of throttle 0 and 1, microseconds.
-pub(crate) fn pulses(compiled: &Compiled, [low, high]: [f64; 2], all: &mut Parameters) {
+fn pulses(compiled: &Compiled, [low, high]: [f64; 2], all: &mut Parameters) {
     let why = "Pulse widths of throttle 0 and 1 on the bench; a board whose motors are on AUX has PWM_AUX_..";
     for motor in 1..=compiled.airframe.rotors() {
         all.because(why)
@@ -141,10 +160,10 @@ pub(crate) fn pulses(compiled: &Compiled, [low, high]: [f64; 2], all: &mut Param
 /// A motor is found out where it draws too little current for its throttle: below `FD_ACT_MOT_C2T`
 /// times throttle less `FD_ACT_LOW_OFF`. Half of the tangent to the current in hover lies below the
 /// current everywhere, as that is convex in the throttle, and above zero around hover.
-fn failure_detection(compiled: &Compiled, currents: Currents, all: &mut Parameters) {
+fn failure_detection(compiled: &Compiled, options: &Options, all: &mut Parameters) {
     all.because("Motors that the failure detector finds out are left out of the mix.")
         .whole("CA_FAILURE_MODE", 1);
-    if currents == Currents::Simulated {
+    if options.format == Format::Simulator {
         all.because("PX4's simulator reports 1 A + 15 A x output of every motor, failed or not.")
             .whole("FD_ACT_EN", 1)
             .real("FD_ACT_MOT_C2T", 15.0)
@@ -203,4 +222,14 @@ fn gains(compiled: &Compiled) -> String {
                  mass_kg` in the airframe file; one unit of yaw is then the pair's slope in hover"
             .to_owned(),
     }
+}
+
+/// QGroundControl's line: vehicle, component, name, value, MAV_PARAM_TYPE.
+fn ground_station(parameter: &Parameter) -> String {
+    let Parameter { name, value, .. } = parameter;
+    let kind = match value {
+        Value::Whole(_) | Value::Line => 6,
+        Value::Real(_) => 9,
+    };
+    format!("1\t1\t{name}\t{value}\t{kind}")
 }

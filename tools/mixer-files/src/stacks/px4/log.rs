@@ -1,11 +1,19 @@
 //! What PX4 logs, by topic.
 
-use crate::import::{Stated, USUAL_US};
-
-use crate::params::Stack;
-
-use crate::review::flight::Flight;
+use super::ulog;
+use crate::import::outputs::USUAL_US;
+use crate::import::rotors::Stated;
+use crate::review::flight::{Flight, Form};
 use crate::review::log::{Channel, Log, Series};
+use crate::stacks::stack::Stack;
+
+/// PX4's ULog.
+pub(crate) const FORM: Form = Form {
+    magic: ulog::MAGIC,
+    begin: ulog::MAGIC,
+    log: |bytes| ulog::read(bytes, WANTED),
+    flight,
+};
 
 #[rustfmt::skip]
 const MOTORS: Channel = ("actuator_motors", &[
@@ -44,7 +52,7 @@ const SPEEDS: Channel = ("esc_status", &[
 ]);
 
 #[rustfmt::skip]
-pub(crate) const WANTED: &[Channel] = &[
+const WANTED: &[Channel] = &[
     MOTORS, ACCELEROMETER, FILTERED, GYROSCOPE, ATTITUDE, VELOCITY, LANDED, BATTERY, CURRENT, DENSITY, TORQUE, THRUST, UNALLOCATED,
     FAILED, SPEEDS,
 ];
@@ -62,9 +70,7 @@ const BATTERIES: u8 = 4;
 /// PX4's `DSHOT_MIN` where a log does not have it.
 const DSHOT_MIN: f64 = 0.055;
 
-/// # Errors
-/// What the log lacks.
-pub(crate) fn flight(mut log: Log, vehicle: &Stated, bench_us: [f64; 2]) -> Result<Flight, String> {
+fn flight(mut log: Log, vehicle: &Stated, bench_us: [f64; 2]) -> Result<Flight, String> {
     let motors = log.some(MOTORS, 0).ok_or(
         "the log has no `actuator_motors`, which says what the motors were told: PX4 logs it by default since 1.13 (SDLOG_PROFILE)",
     )?;

@@ -1,12 +1,20 @@
 //! What ArduPilot logs, by message.
 
-use crate::import::Stated;
 use mixer_compiler::atmosphere::{LAPSE, density};
 
-use crate::params::Stack;
-
-use crate::review::flight::Flight;
+use super::dataflash;
+use crate::import::rotors::Stated;
+use crate::review::flight::{Flight, Form};
 use crate::review::log::{Channel, Log, Series};
+use crate::stacks::stack::Stack;
+
+/// ArduPilot's DataFlash log.
+pub(crate) const FORM: Form = Form {
+    magic: dataflash::MAGIC,
+    begin: dataflash::BEGIN,
+    log: |bytes| dataflash::read(bytes, WANTED),
+    flight,
+};
 
 #[rustfmt::skip]
 const OUTPUTS: Channel = ("RCOU", &[
@@ -27,7 +35,7 @@ const FLAGS: [Channel; 3] = [("PIDR", &["Flags"]), ("PIDP", &["Flags"]), ("PIDY"
 const LIMIT: u64 = 1;
 
 #[rustfmt::skip]
-pub(crate) const WANTED: &[Channel] = &[
+const WANTED: &[Channel] = &[
     OUTPUTS, ACCELEROMETER, GYROSCOPE, ATTITUDE, VELOCITIES[0], VELOCITIES[1], EVENTS, BATTERY, CURRENT, SPEED, AIR,
     FLAGS[0], FLAGS[1], FLAGS[2],
 ];
@@ -38,9 +46,7 @@ const FLYING: f64 = 28.0;
 
 const ZERO_C: f64 = 273.15;
 
-/// # Errors
-/// What the log lacks.
-pub(crate) fn flight(mut log: Log, vehicle: &Stated, bench_us: [f64; 2]) -> Result<Flight, String> {
+fn flight(mut log: Log, vehicle: &Stated, bench_us: [f64; 2]) -> Result<Flight, String> {
     let motors = vehicle.rotors.as_ref().map_or(vehicle.pins.len(), Vec::len);
     // As ArduPilot has them where no parameter says it.
     let pin_of = |motor: usize| {

@@ -6,9 +6,9 @@
 
 use mixer_rt::{Conditions, Health, Wrench};
 
-use crate::Compiled;
-use crate::airframe::{Axis, Correction};
-use crate::model::PairMap;
+use mixer_compiler::Compiled;
+use mixer_compiler::airframe::{Axis, Correction};
+use mixer_compiler::model::PairMap;
 
 /// A setpoint and the conditions it is asked under. The density is 0 without `[air]`.
 pub type Vector = (Wrench, Conditions);

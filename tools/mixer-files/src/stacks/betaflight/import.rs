@@ -13,28 +13,11 @@ use std::collections::BTreeMap;
 use mixer_compiler::Source;
 use mixer_compiler::airframe::Spin;
 
-use super::outputs;
-use super::parameters::words;
-use super::rotors::{Imported, LeftOut, Own, Rotor, UPWARD};
-use crate::params::frames::LAYER_M;
-
-/// Betaflight's coaxial tables (`mixerOctoX8`, `mixerOctoX8P`, `mixerY6`): roll, pitch, yaw; throttle is 1. The
-/// second half of the motors is under the first. The command line has `OCTOX8P` since 2025.12.
-#[rustfmt::skip]
-pub(crate) const TABLES: [(&str, &[[f64; 3]]); 3] = [
-    ("OCTOX8", &[
-        [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0], [1.0, 1.0, 1.0], [1.0, -1.0, -1.0],
-        [-1.0, 1.0, 1.0], [-1.0, -1.0, -1.0], [1.0, 1.0, -1.0], [1.0, -1.0, 1.0],
-    ]),
-    ("OCTOX8P", &[
-        [0.0, 1.0, -1.0], [-1.0, 0.0, 1.0], [1.0, 0.0, 1.0], [0.0, -1.0, -1.0],
-        [0.0, 1.0, 1.0], [-1.0, 0.0, -1.0], [1.0, 0.0, -1.0], [0.0, -1.0, 1.0],
-    ]),
-    ("Y6", &[
-        [0.0, 1.333_333, 1.0], [-1.0, -0.666_667, -1.0], [1.0, -0.666_667, -1.0],
-        [0.0, 1.333_333, -1.0], [-1.0, -0.666_667, 1.0], [1.0, -0.666_667, 1.0],
-    ]),
-];
+use super::frames::TABLES;
+use crate::import::outputs;
+use crate::import::parameters::words;
+use crate::import::rotors::{Imported, LeftOut, Own, Rotor, UPWARD};
+use crate::stacks::ardupilot::frames::LAYER_M;
 
 /// Factors that differ by less are one.
 const SAME_FACTOR: f64 = 0.01;
@@ -213,7 +196,7 @@ fn mmix(words: &[&str]) -> Option<(usize, [f64; 4])> {
     ))
 }
 
-pub(super) fn read(source: &Source, arm: Option<f64>) -> Result<Imported, String> {
+pub(crate) fn read(source: &Source, arm: Option<f64>) -> Result<Imported, String> {
     let file = &source.name;
     let mut dump = Dump::read(source)?;
     let (profile, mut notes) = dump.multirotor()?;

@@ -4,8 +4,34 @@ use mixer_compiler::Compiled;
 use mixer_compiler::airframe::Airmode;
 use mixer_facts::hover;
 
-use crate::import::betaflight::TABLES;
-use crate::params::parameter::{Parameters, curve};
+use super::frames::TABLES;
+use crate::params::parameter::{Parameters, Value, curve};
+use crate::params::writer::Back::{Stays, ToldByImport, Written};
+use crate::params::writer::{Options, Read, Writer};
+
+/// See [`Writer`].
+pub(crate) const WRITER: Writer = Writer {
+    geometry: |compiled, _, all| geometry(compiled, all),
+    settings,
+    own,
+    pulses,
+    pulse_names: "min_command and max_throttle, which DShot does not use,",
+    frame: ["", "save\n"],
+    line: |parameter| match parameter.value {
+        Value::Line => parameter.name.clone(),
+        value => format!("set {} = {value}", parameter.name),
+    },
+    unit: ("A PID sum of 1000, or full stick,", Compiled::betaflight_scale),
+    read: READ,
+};
+
+/// What becomes of the parameters that `import` reads, words of Betaflight's and INAV's command line.
+#[rustfmt::skip]
+const READ: &[Read] = &[
+    (Written, &["mixer", "mmix", "yaw_motors_reversed", "feature 3D"]),
+    (ToldByImport, &["mixer_profile", "platform_type", "motor_direction_inverted", "yaw_motor_direction", "yaw_direction"]),
+    (Stays, &["motor_output_reordering"]),
+];
 
 /// `MAX_SUPPORTED_MOTORS` of Betaflight's boards.
 const MOST_MOTORS: usize = 8;
@@ -17,7 +43,7 @@ const SAME_FACTOR: f64 = 0.05;
 const MOST_IDLE: f64 = 0.2;
 
 /// `mixer`, and where no table of Betaflight has these factors, `mmix`.
-pub(crate) fn geometry(compiled: &Compiled, all: &mut Parameters) -> Result<(), String> {
+fn geometry(compiled: &Compiled, all: &mut Parameters) -> Result<(), String> {
     let own = compiled.betaflight_factors();
     if own.len() > MOST_MOTORS {
         return Err(format!(
@@ -54,7 +80,7 @@ fn custom(own: &[[f64; 3]], all: &mut Parameters) {
 }
 
 /// Where this mixer puts out the throttles.
-pub(crate) fn settings(compiled: &Compiled, all: &mut Parameters) {
+fn settings(compiled: &Compiled, _: &Options, all: &mut Parameters) {
     all.because("The mixer inverts the rotors' curve.")
         .whole("thrust_linear", 0);
     all.because("The mixer follows the battery's voltage.")
@@ -95,7 +121,7 @@ pub(crate) fn settings(compiled: &Compiled, all: &mut Parameters) {
 }
 
 /// Where Betaflight's own mixer puts out the throttles.
-pub(crate) fn own(compiled: &Compiled, all: &mut Parameters) {
+fn own(compiled: &Compiled, _: &Options, all: &mut Parameters) {
     let curve = (100.0 * curve(compiled, true)).round() as i32;
     all.because("Fitted to the thrust of the pair with both rotors alike, in percent as MOT_THST_EXPO.")
         .whole("thrust_linear", curve);
@@ -115,7 +141,7 @@ pub(crate) fn own(compiled: &Compiled, all: &mut Parameters) {
 }
 
 /// Pulse widths of throttle 0 and 1, microseconds; DShot has none.
-pub(crate) fn pulses([low, high]: [f64; 2], all: &mut Parameters) {
+fn pulses(_: &Compiled, [low, high]: [f64; 2], all: &mut Parameters) {
     all.because("Pulse widths of throttle 0 and 1 on the bench; DShot does not use them.")
         .whole("min_command", low as i32)
         .whole("max_throttle", high as i32);

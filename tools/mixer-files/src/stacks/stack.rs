@@ -1,4 +1,4 @@
-//! Flight stacks.
+//! Which flight stack.
 
 use serde::Serialize;
 

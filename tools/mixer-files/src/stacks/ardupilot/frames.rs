@@ -8,11 +8,11 @@ use Layer::{Lower, Upper};
 use Spin::{Ccw, Cw};
 
 /// `FRAME_CLASS` of this mixer, `MOTOR_FRAME_COAXIAL_MIXER` of `examples/ardupilot`.
-pub const COAXIAL_MIXER: i32 = 100;
+pub(crate) const COAXIAL_MIXER: i32 = 100;
 
 /// Of a pair.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Layer {
+pub(crate) enum Layer {
     /// In free air.
     Upper,
     /// In the wake.
@@ -20,11 +20,11 @@ pub enum Layer {
 }
 
 /// Half the distance of two layers, m: any will do, the units lie between them.
-pub const LAYER_M: f64 = 0.05;
+pub(crate) const LAYER_M: f64 = 0.05;
 
 /// A motor of a frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Motor {
+pub(crate) struct Motor {
     /// Clockwise from the nose.
     pub angle_deg: f64,
     /// Seen from above.
@@ -35,7 +35,7 @@ pub struct Motor {
 
 /// The name and the motors of a `FRAME_CLASS` and `FRAME_TYPE`, from motor 1 on.
 #[rustfmt::skip]
-pub fn motors(class: usize, kind: usize) -> Option<(&'static str, Vec<Motor>)> {
+pub(crate) fn motors(class: usize, kind: usize) -> Option<(&'static str, Vec<Motor>)> {
     let cross = |first: f64, spins: [Spin; 2]| {
         let [a, b] = spins;
         vec![
@@ -93,7 +93,7 @@ const SAME_FACTOR: f64 = 0.05;
 
 /// The frame whose motors are an airframe's rotors by place, spin and layer, channel 0 being motor
 /// 1: `FRAME_CLASS`, `FRAME_TYPE` and its name.
-pub fn find(compiled: &Compiled) -> Option<(usize, usize, &'static str)> {
+pub(crate) fn find(compiled: &Compiled) -> Option<(usize, usize, &'static str)> {
     let own = compiled.ardupilot_factors();
     let mut rotors: Vec<(usize, Spin, Layer)> = Vec::new();
     for unit in &compiled.airframe.units {

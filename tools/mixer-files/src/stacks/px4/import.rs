@@ -3,8 +3,8 @@
 
 use mixer_compiler::airframe::Spin;
 
-use super::parameters::Parameters;
-use super::rotors::{Imported, LeftOut, Own, Rotor};
+use crate::import::parameters::Parameters;
+use crate::import::rotors::{Imported, LeftOut, Own, Rotor};
 
 /// What PX4 takes where a file has no `CA_ROTORi_CT`, no `CA_ROTORi_KM` and no `CA_ROTORi_AZ`.
 const THRUST: f64 = 6.5;
@@ -14,7 +14,7 @@ const UPWARD: f64 = -1.0;
 /// Most rotors that PX4 has parameters for.
 const MOST_ROTORS: usize = 12;
 
-pub(super) fn read(parameters: &Parameters) -> Result<Imported, String> {
+pub(crate) fn read(parameters: &Parameters) -> Result<Imported, String> {
     let count = match parameters.whole("CA_ROTOR_COUNT") {
         Some(count) if (1..=MOST_ROTORS).contains(&count) => count,
         _ => {
