@@ -3,6 +3,7 @@
 //!
 //! `cargo tables` writes them all; `tests/documents.rs` holds the pages to them.
 
+mod flown;
 mod tables;
 
 use std::path::PathBuf;
@@ -28,7 +29,8 @@ pub fn tables() -> Result<Vec<Table>, String> {
     let of = |page, name, text| Table { page, name, text };
     let mut tables = tables::keys();
     tables.extend([
-        of("README.md", "isolated", tables::isolated()?),
+        of("README.md", "flown", flown::flown()?),
+        of("docs/evaluation.md", "isolated", tables::isolated()?),
         of("docs/evaluation.md", "accuracy", tables::accuracy()?),
         of("docs/evaluation.md", "static", tables::static_comparison()?),
         of("docs/evaluation.md", "allocators", tables::allocators()?),

@@ -18,7 +18,7 @@ use crate::{airframes, allocators, golden, root, thin_air};
 const PAPER: &str = "isae-x8";
 
 /// A table in Markdown; columns of numbers are aligned to the right.
-fn markdown(header: &[&str], rows: &[Vec<String>]) -> String {
+pub(super) fn markdown(header: &[&str], rows: &[Vec<String>]) -> String {
     let line = |cells: &[String]| format!("| {} |\n", cells.join(" | "));
     let header: Vec<String> = header.iter().map(|cell| (*cell).to_owned()).collect();
     let is_number = |cell: &String| cell.starts_with(|c: char| c.is_ascii_digit() || c == '-');
