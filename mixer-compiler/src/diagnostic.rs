@@ -41,8 +41,18 @@ impl Diagnostic {
     /// The fault of a file of another kind, which has no place.
     pub(crate) fn of_another_kind(kind: Kind) -> Self {
         let what = kind.told();
-        let fault = Self::new(Code::Syntax, "", 0..0, format!("not TOML: this is {what}"));
-        Self { span: None, ..fault }.help("an airframe file, as `cargo mixer new` writes one")
+        let (message, help) = match kind {
+            Kind::Pair => (
+                format!("no airframe: this is {what}"),
+                "cargo mixer new --frame x8 --arm METRE --pair FILE -o AIRFRAME.toml makes one of it",
+            ),
+            _ => (
+                format!("not TOML: this is {what}"),
+                "an airframe file, as `cargo mixer new` writes one",
+            ),
+        };
+        let fault = Self::new(Code::Syntax, "", 0..0, message);
+        Self { span: None, ..fault }.help(help)
     }
 
     /// A fault of kind `code` in `key`, without label and help yet.

@@ -40,6 +40,8 @@ keys! { TABLE = "[pair]":
         "The vehicle whose pair this is, where it stands in for one that was not measured yet: a warning (MIX309), the verdict and saved files say so.";
     BENCH_OPTIONS "bench_options" = "[\"--swap\", \"--unit\", \"thrust=gf\"]", Kind::Texts,
         "Options of `cargo mixer identify` that the bench files needed to be read: `report --bench` reads them so, too.";
+    BENCH_V "bench_v" = "[13.96, 14.9]", Kind::Numbers([2, 2]),
+        "Least and greatest voltage of the bench's rows, V, where they were not brought to one: the pair has their sag, which [voltage] would count again (MIX324).";
 }
 
 /// Sense of rotation of a unit's upper rotor, seen from above. The lower rotor turns the other way.
@@ -117,6 +119,8 @@ pub struct Pair {
     /// Options of `cargo mixer identify` that the bench files needed to be read; empty where the file
     /// has none.
     pub bench_options: Vec<String>,
+    /// Least and greatest voltage of the bench's rows, V, where they were not brought to one.
+    pub bench_v: Option<[f64; 2]>,
 }
 
 /// The pair, and its bench's spin also where other keys are at fault.
@@ -132,6 +136,7 @@ pub(super) fn read(table: &mut Fields<'_, '_>, throttle: Option<&Throttle>) -> (
     let borrowed_from = table.read::<String>(&BORROWED_FROM);
     let bench_options = table.read::<Vec<Spanned<String>>>(&BENCH_OPTIONS);
     let bench_options = bench_options.map_or(Vec::new(), Spanned::into_inner);
+    let bench_v = table.array(&BENCH_V);
     let pair = || {
         Some(Pair {
             basis: basis?,
@@ -145,6 +150,7 @@ pub(super) fn read(table: &mut Fields<'_, '_>, throttle: Option<&Throttle>) -> (
             uncertainty: uncertainty.flatten(),
             borrowed_from: borrowed_from.map(Spanned::into_inner).unwrap_or_default(),
             bench_options: bench_options.into_iter().map(Spanned::into_inner).collect(),
+            bench_v,
         })
     };
     (pair(), upper_spin)

@@ -160,6 +160,8 @@ catalogue! {
     ConditionFactor = 322,
     /// No `[voltage]`: thrust is taken to be the same at any voltage of the pack.
     NoVoltage = 323,
+    /// A `[voltage]` beside a pair whose rows have the sag of their own supply.
+    SagTwice = 324,
     /// A tolerance above a hundredth of a unit's largest effort.
     WideTolerance = 330,
     /// A yaw reserve that the units cannot hold at any thrust.

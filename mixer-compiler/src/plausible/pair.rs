@@ -2,7 +2,7 @@
 
 use super::rule::{Facts, Rule};
 use crate::diagnostic::{Code, number, rounded};
-use crate::model::TORQUE_SPAN_M;
+use crate::model::{GROWTH, TORQUE_SPAN_M};
 
 /// Largest thrust of one unit that is taken for newtons. Beyond it both may be in gram-force.
 const LARGEST_THRUST_N: f64 = 2000.0;
@@ -130,10 +130,6 @@ fn power_law([from, to]: [f64; 2], [low, high]: [f64; 2]) -> f64 {
     libm::log(to / from) / libm::log(high / low)
 }
 
-/// The power of the throttle with which thrust grows along equal throttles, from the middle to full: 1.53 to
-/// 1.91 on real maps.
-const GROWTH: [f64; 2] = [1.4, 2.05];
-
 /// The thrust that a rotor adds with the other at full throttle, over what it adds with the other at idle:
 /// less in a wake, 0.75 to 0.94 on real maps.
 const LEFT: [f64; 2] = [0.65, 1.0];
@@ -148,7 +144,17 @@ pub(super) fn shape(facts: &Facts<'_>) -> Vec<Rule> {
         Code::LopsidedPair,
         Code::PairShape,
     ];
-    const MEND: &str = "check each coefficient and their order, which that of the basis fixes";
+    // Programs write a deviation beside their coefficients, which are then right as such.
+    let (label, mend) = match facts.airframe.pair.uncertainty {
+        None => (
+            "a coefficient off?",
+            "check each coefficient and their order, which that of the basis fixes",
+        ),
+        Some(_) => (
+            "the bench's throttle or load cells?",
+            "see what identify or predict say of the bench file: pulses of another range, a linearised throttle, a load cell off",
+        ),
+    };
     let [idle, full] = facts.map.range();
     let middle = 0.5 * (idle + full);
     let half = facts.map.efforts([middle; 2])[0];
@@ -160,7 +166,7 @@ pub(super) fn shape(facts: &Facts<'_>) -> Vec<Rule> {
         .all(|share| (LEFT[0]..=LEFT[1]).contains(share));
     let rule = |holds, message: String| {
         let rule = Rule::holds(Code::PairShape, "pair.thrust_n", holds);
-        rule.says(message, "a coefficient off?", MEND).unless_told(OTHERS)
+        rule.says(message, label, mend).unless_told(OTHERS)
     };
     let [least, most] = GROWTH;
     vec![

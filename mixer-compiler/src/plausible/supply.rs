@@ -17,11 +17,25 @@ const ONE_CELL_THRUST_N: f64 = 5.0;
 /// Factors that packs and air give: 0.6 to 1.4 from empty to full, 0.6 to 1.1 from mountain to coast.
 const FACTORS: [f64; 2] = [0.35, 2.0];
 
+/// How far voltages of the bench are apart, or the reference from them, as a share, where it matters.
+const APART: f64 = 0.01;
+
+/// What brings the rows of a bench to one voltage.
+const TO_ONE: &str = "run identify again with --voltage-exponent 1.75 --cells N, which brings the rows to one voltage and \
+                      writes [voltage]";
+
 /// The voltage of the bench, the power of the voltage that each law follows over its range, and what
 /// it leaves of thrust or torque at the ends. A vehicle without `[voltage]` has a pack that is not
 /// known; without `[vehicle]` it may be a pair on a stand.
 pub(super) fn voltage(facts: &Facts<'_>) -> Vec<Rule> {
     let Some(voltage) = &facts.airframe.voltage else {
+        let help = match facts.airframe.pair.bench_v {
+            Some(_) => TO_ONE,
+            None => {
+                "add [voltage] with reference_v (the bench's), range_v (the pack's), thrust_exponent and torque_exponent \
+                 (1.75 is typical)"
+            }
+        };
         let lost = 100.0 * (1.0 - libm::pow(1.0 - PACK_FALLS, TYPICAL_EXPONENT));
         return vec![
             Rule::holds(Code::NoVoltage, "vehicle.mass_kg", facts.airframe.vehicle.is_none()).says(
@@ -31,8 +45,7 @@ pub(super) fn voltage(facts: &Facts<'_>) -> Vec<Rule> {
                     100.0 * PACK_FALLS
                 ),
                 "flies at one voltage",
-                "add [voltage] with reference_v (the bench's), range_v (the pack's), thrust_exponent and torque_exponent \
-                 (1.75 is typical)",
+                help,
             ),
         ];
     };
@@ -49,6 +62,21 @@ pub(super) fn voltage(facts: &Facts<'_>) -> Vec<Rule> {
             "multiply reference_v, range_v and the voltages of points by the number of cells in series",
         ),
     ];
+    if let Some([low, high]) = facts.airframe.pair.bench_v {
+        let near = [(1.0 - APART) * high, (1.0 + APART) * low];
+        rules.push(
+            Rule::within(Code::SagTwice, "voltage.reference", voltage.reference, near).says(
+                format!(
+                    "the bench had {} to {} V, which are in the pair as they were: with a reference of {reference} V [voltage] \
+                     counts the sag twice, or takes the pair for that of another voltage",
+                    number(low),
+                    number(high)
+                ),
+                "beside rows at their own voltages",
+                TO_ONE,
+            ),
+        );
+    }
     rules.extend(laws(voltage, &VOLTAGE));
     rules
 }

@@ -36,6 +36,11 @@ pub(crate) fn parse<'a>(source: &'a Source, faults: &mut Vec<Diagnostic>) -> Opt
         }
     }
     let table = table.into_inner();
+    let has = |key: &str| table.contains_key(key);
+    if errors.is_empty() && has("pair") && !["name", "unit", "layout"].into_iter().any(has) {
+        faults.push(Diagnostic::of_another_kind(Kind::Pair));
+        return None;
+    }
     let sound = errors.iter().all(|error| error.message() == DUPLICATE);
     let long_values = match errors.is_empty() {
         true => Vec::new(),

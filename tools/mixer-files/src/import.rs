@@ -146,6 +146,10 @@ fn of_parameters(file: &Source, arm_m: Option<f64>) -> Result<Imported, String> 
             parameters.count()
         ));
     };
+    if arm_m.is_some() && parameters.has("CA_ROTOR_COUNT") {
+        let told = "--arm has nothing to work on: the file has the place of each rotor (CA_ROTOR0_PX ..)";
+        imported.notes.push(told.into());
+    }
     imported.notes.extend(outputs::order(&parameters));
     let pulses = outputs::own_pulses(&parameters);
     for rotor in &mut imported.rotors {

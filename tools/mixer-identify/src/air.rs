@@ -7,6 +7,7 @@
 //! than at the voltage s V.
 
 use mixer_compiler::airframe::TYPICAL_EXPONENT;
+use mixer_compiler::atmosphere::altitude_of;
 use serde::Serialize;
 
 use crate::bench::Bench;
@@ -16,6 +17,9 @@ use crate::statistics::extent;
 /// Densities in flight, kg/m3, where nothing else is known, and what they are.
 const IN_FLIGHT: [f64; 2] = [0.75, 1.4];
 const OF_FLIGHT: &str = "in flight: 3,000 m at 40 C to sea level at -20 C";
+
+/// Density altitude, m, from which it is asked about: 760 mm of mercury taken for hPa are the air of 2,400 m.
+pub(crate) const THIN_M: f64 = 1500.0;
 
 /// Exponent of the density where that of the voltage is the usual one.
 pub const DENSITY_EXPONENT: f64 = TYPICAL_EXPONENT - 1.0;
@@ -48,6 +52,18 @@ impl Air {
             range_kg_m3: (!known.is_empty()).then(|| extent(densities())),
             exponents,
         }
+    }
+
+    /// A question where few benches are as high: other units make such an air.
+    pub(crate) fn doubt(&self) -> Option<String> {
+        let altitude_m = altitude_of(self.density_kg_m3?);
+        (altitude_m > THIN_M).then(|| {
+            format!(
+                "the air of {} is that of {altitude_m:.0} m: where the bench is not so high, a pressure in mm of mercury is 1.333 times as \
+                 many hPa (--unit pressure=mmHg for a column), and a temperature may be a motor's",
+                self.from
+            )
+        })
     }
 
     /// Brings the rows of a file to this density.

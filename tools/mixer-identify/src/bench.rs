@@ -5,21 +5,24 @@
 //! signs and sums; refuse rows with a missing value.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::f64::consts::PI;
 
 use serde::Serialize;
 
-use self::air::{BenchAir, DENSITIES};
+use self::air::BenchAir;
 use self::header::Columns;
 use self::read::{Fault, Log, RefusedRow, Sample, refused_told};
 use self::sign::{SignPolicy, Signs};
 use self::units::Quantity;
 use crate::refusal::Refusal;
 use crate::rotor::Turning;
+use crate::statistics::{extent, mean_of_finite, median};
 
 pub mod air;
 pub mod header;
 pub mod number;
 pub mod plateau;
+pub mod quantity;
 pub mod read;
 pub mod sheet;
 pub mod sign;
@@ -57,6 +60,10 @@ pub struct Point {
     pub imbalance: f64,
     /// Electrical power of the whole, W; NaN where not measured.
     pub power_w: f64,
+    /// Power of the shafts, W, and speed of one rotor that turns alone, revolutions per minute; NaN where not measured.
+    pub shaft_w: f64,
+    /// As above.
+    pub rpm: f64,
     /// Thrust of the upper and of the lower rotor, N, and torque likewise, N m, as their load cells have
     /// them; NaN where they have none.
     pub cells: [f64; 4],
@@ -122,6 +129,15 @@ pub struct Bench {
     pub notes: Vec<String>,
     /// Why there is no electrical power, where columns are missing for it.
     pub no_power: Option<String>,
+    /// Whether the record of a command seems to drift, so that neither rows nor the shape can be judged.
+    #[serde(skip)]
+    pub record_drifts: bool,
+    /// Options that had nothing to work on in this file.
+    #[serde(skip)]
+    pub idle_options: Vec<String>,
+    /// Lines of the rows in which every throttle was off.
+    #[serde(skip)]
+    pub rests: Vec<u64>,
     /// The points.
     #[serde(skip)]
     pub points: Vec<Point>,
@@ -268,7 +284,22 @@ impl Turned {
             return Err("the torque is empty");
         }
         let [voltage, imbalance] = supply(self.rotors, sample.voltage);
+        let alone = self.kind == Kind::SingleRotor;
+        let shaft = |&rotor: &usize| {
+            let own = if alone {
+                torque
+            } else {
+                sample.torque.rotors[rotor]
+            };
+            (own * sample.speed[rotor]).abs() * (PI / 30.0)
+        };
         Ok(Point {
+            shaft_w: self.rotors.iter().map(shaft).sum(),
+            rpm: if alone {
+                sample.speed[self.rotors[0]]
+            } else {
+                f64::NAN
+            },
             line: sample.line,
             u,
             l,
@@ -294,18 +325,24 @@ pub fn prepare(log: Log, how: &Preparation) -> Result<Bench, Refusal> {
         mut refused,
         air,
         mut notes,
+        idle_options,
     } = log;
     let rows = samples.len() + refused.len();
     few_refused(&name, &refused, rows)?;
     some_commanded(&name, &columns, &samples)?;
     let unreadable = refused.len();
     let air = match &how.air {
-        None => air.map(|air| plausible(&name, air)).transpose()?,
+        None => by_columns(&name, &air)?,
         given => given.clone(),
     };
     let turned = Turned::of(&mut samples, &columns, how);
     notes.extend(turned.note(&columns, how));
     let tare = tare::examine(&mut samples, |s| turned.is_rest(s), how.tare);
+    let rests = samples
+        .iter()
+        .filter(|s| turned.is_rest(s))
+        .map(|s| s.line)
+        .collect();
     let before = samples.len();
     samples.retain(|s| !turned.is_start_or_stop(s));
     let start_stop_rows = before - samples.len();
@@ -315,6 +352,8 @@ pub fn prepare(log: Log, how: &Preparation) -> Result<Bench, Refusal> {
     let (streaming, mut settling_rows) = (plateau::is_streaming(&samples), 0);
     if streaming {
         (samples, settling_rows) = plateau::means(&samples);
+    } else {
+        notes.extend(counted_once(&name, &mut samples));
     }
     if samples.len() > MOST_POINTS {
         return Err(Refusal::of(
@@ -324,9 +363,12 @@ pub fn prepare(log: Log, how: &Preparation) -> Result<Bench, Refusal> {
         ));
     }
     let may_lack_torque = how.is_correction || turned.one_signal;
+    let mut record_drifts = false;
     let (signs, sums) = match turned.kind {
         Kind::Pair => {
-            notes.extend(uneven_levels(&samples));
+            let uneven = uneven_levels(&samples);
+            record_drifts = uneven.is_some();
+            notes.extend(uneven);
             sign::pair(&name, &columns, &samples, &how.signs, may_lack_torque, &mut notes)?
         }
         Kind::SingleRotor => sign::single(&columns, turned.rotors[0], how.own_columns, &samples, &how.signs),
@@ -376,21 +418,51 @@ pub fn prepare(log: Log, how: &Preparation) -> Result<Bench, Refusal> {
         tare: tare.taken_off,
         offsets: tare.warnings,
         notes,
+        idle_options,
+        record_drifts,
+        rests,
         points,
     })
 }
 
-/// The air by the columns of a file.
-fn plausible(name: &str, air: BenchAir) -> Result<BenchAir, Refusal> {
-    let ([low, high], density) = (DENSITIES, air.density_kg_m3);
-    if (low..=high).contains(&density) {
-        return Ok(air);
+/// Span of the temperature that air has within a run, K. Motors have more.
+const AIR_WARMS_K: f64 = 10.0;
+
+/// The air by the columns of a file, whose `rows` are temperature, K, pressure, Pa, and density, kg/m3.
+fn by_columns(name: &str, rows: &[[f64; 3]]) -> Result<Option<BenchAir>, Refusal> {
+    let column = |k: usize| rows.iter().map(move |row| row[k]).filter(|x| x.is_finite());
+    let [kelvin, pascal, density_kg_m3] = [0, 1, 2].map(|k| mean_of_finite(column(k)));
+    let [coldest, warmest] = extent(column(0));
+    let values = [
+        ("temperature", kelvin - 273.15),
+        ("pressure", 0.01 * pascal),
+        ("density", density_kg_m3),
+    ];
+    let fault = match warmest - coldest > AIR_WARMS_K {
+        true => Some(format!(
+            "temperature: it spans {:.0} K, as motors do",
+            warmest - coldest
+        )),
+        false => values
+            .into_iter()
+            .filter(|(_, x)| x.is_finite())
+            .find_map(|(of, x)| {
+                let told = quantity::quantity(of, (1e3 * x).round() / 1e3).err()?;
+                Some(format!("{of}: {told}"))
+            }),
+    };
+    let from = format!("columns of {name}");
+    match fault {
+        None => Ok(density_kg_m3
+            .is_finite()
+            .then_some(BenchAir { density_kg_m3, from })),
+        Some(fault) => Err(Refusal::of(
+            name,
+            format!("its columns are not of the air: {fault}"),
+            "the unit by --unit temperature=K (or F, pressure=mmHg ..); where it is a motor's, the air by --temperature C --pressure HPA in \
+             place of the columns",
+        )),
     }
-    Err(Refusal::of(
-        name,
-        format!("its columns of the air give a density of {density:.3} kg/m3, not within {low} to {high}"),
-        "their units by --unit temperature=, pressure= or density=; or the air by --temperature C --pressure HPA in their place",
-    ))
 }
 
 /// Whether both rotors were measured: thrust or torque of each, or their currents.
@@ -475,6 +547,21 @@ fn some_commanded(name: &str, columns: &Columns, samples: &[Sample]) -> Result<(
     ))
 }
 
+/// Leaves one of equal rows one below the other: the same measurement, whether pasted twice or logged by a program that
+/// got stuck.
+fn counted_once(name: &str, samples: &mut Vec<Sample>) -> Option<String> {
+    let (before, mut again) = (samples.len(), 0);
+    samples.dedup_by(|next, first| {
+        let same = next.equals(first);
+        again = if same && again == 0 { next.line } else { again };
+        same
+    });
+    let more = before - samples.len();
+    (more > 0).then(|| {
+        format!("{name}:{again}: {more} of {before} rows are equal to the one before them and count once")
+    })
+}
+
 /// Share of the median voltage below which a supply is off, or was not recorded.
 const OFF: f64 = 0.25;
 
@@ -499,10 +586,7 @@ fn supplied(
     refused: &mut Vec<RefusedRow>,
     notes: &mut Vec<String>,
 ) {
-    let volts = samples.iter().map(|s| s.voltage[rotor]);
-    let mut volts: Vec<f64> = volts.filter(|v| v.is_finite()).collect();
-    volts.sort_by(f64::total_cmp);
-    let Some(&median) = volts.get(volts.len() / 2) else {
+    let Some(median) = median(samples.iter().map(|s| s.voltage[rotor])) else {
         return;
     };
     if median <= 0.0 {

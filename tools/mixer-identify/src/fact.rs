@@ -3,7 +3,7 @@
 use mixer_compiler::atmosphere::altitude_of;
 use mixer_compiler::model::PairMap;
 
-use super::air::Air;
+use super::air::{Air, THIN_M};
 use super::bench::{Bench, Kind};
 use super::fit::Fit;
 use super::fit::pair::Pair;
@@ -370,9 +370,6 @@ fn of_power(facts: &mut Facts, found: &LeastPower) {
     facts.more(text);
 }
 
-/// Density altitude, m, from which it is told: benches stand higher, and lower, but not often.
-const THIN_M: f64 = 1500.0;
-
 /// The air, where it is known.
 fn of_air(facts: &mut Facts, air: &Air) {
     let Some((density, [low, high])) = air.density_kg_m3.zip(air.range_kg_m3) else {
@@ -387,7 +384,6 @@ fn of_air(facts: &mut Facts, air: &Air) {
         false => String::new(),
     };
     let altitude_m = altitude_of(density);
-    // 760 mm of mercury taken for hPa are the air of 2,400 m.
     let thin = match altitude_m > THIN_M {
         true => format!(" (density altitude {altitude_m:.0} m)"),
         false => String::new(),

@@ -7,11 +7,13 @@ use std::iter::{once, repeat};
 use mixer_compiler::diagnostic::{printable, wrapped};
 use toml_edit::{DocumentMut, value};
 
+use super::bench::Kind;
 use super::fact::{Detail, Fact, of_identified, of_predicted, runs};
 use super::fit::power::Power;
 use super::fit::{Fit, hundredths};
 use super::identified::Identified;
 use super::rotor::predict::Predicted;
+use super::statistics::extent;
 use super::table::{commented, numbers, table, texts};
 
 /// The key of the torque of least power. Which airframe it is decides whether that saves anything,
@@ -86,6 +88,10 @@ pub fn tables(id: &Identified) -> String {
             )),
             None => tail = format!("\n{}", about("pair.power")),
         }
+        let volts = rows_v(id).filter(|_| pair.normalised_to_v.is_none() && !id.closed_loop);
+        if let Some(volts) = volts {
+            entries.push(("bench_v", numbers(volts)));
+        }
         if !id.options.is_empty() {
             entries.push((BENCH_OPTIONS, texts(&id.options)));
         }
@@ -117,6 +123,13 @@ const SIGN: &str = "# Torque is positive where the lower rotor outweighs the upp
 
 const MEASURED: &str = "# The voltage of the flight must be measured where the bench's was: at the same point of the wiring, under load.\n\
                         # Behind other leads, or at no load, k is wrong by what the voltage drops in between.\n";
+
+/// Least and greatest voltage of the pair's rows, V.
+fn rows_v(id: &Identified) -> Option<[f64; 2]> {
+    let of_pair = id.files.iter().filter(|file| file.kind == Kind::Pair);
+    let [low, high] = extent(of_pair.flat_map(|file| &file.points).map(|p| p.voltage));
+    (low <= high).then(|| [low, high].map(hundredths))
+}
 
 /// The supply that `[voltage]` describes.
 struct Supply {
@@ -164,10 +177,18 @@ fn voltage(document: &mut DocumentMut, tail: &mut String, about: &str, of: &Supp
         // A speed that is held does not follow the voltage.
         _ if of.closed_loop => {}
         (reference, range) => {
-            *tail += &format!("\n{about}{}", to_fill_in(reference, range, exponents));
+            let text = match of.range_v.filter(|_| known == 0 && of.of_a_pair) {
+                Some(_) => BRING.to_owned(),
+                None => to_fill_in(reference, range, exponents),
+            };
+            *tail += &format!("\n{about}{text}");
         }
     }
 }
+
+const BRING: &str = "# No [voltage]: the mixer takes k = 1 at any voltage. The map has the sag of the bench's supply, which a [voltage] written\n\
+                     # by hand counts twice. To follow the battery, identify again with --voltage-exponent 1.75 --cells N: that brings the\n\
+                     # rows to one voltage; 1.75 is the median of 104 motors with propellers.\n";
 
 /// `[voltage]` in comments.
 fn to_fill_in(reference: Option<f64>, range: Option<[f64; 2]>, exponents: [Option<f64>; 2]) -> String {

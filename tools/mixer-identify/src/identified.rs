@@ -4,13 +4,14 @@ use serde::Serialize;
 
 use crate::air::{Air, DENSITY_EXPONENT};
 use crate::bench::read::Reading;
-use crate::bench::{Bench, Kind, Preparation, equal_commands, is_one_signal};
+use crate::bench::{Bench, Kind, Point, Preparation, equal_commands, is_one_signal};
 use crate::fit::balance::balanced;
 use crate::fit::hundredths;
 use crate::fit::pair::{self, Pair};
 use crate::fit::power::{self, Power};
 use crate::fit::voltage::{self, Exponent, PLAUSIBLE, Voltage};
 use crate::fit::wishes::FitOptions;
+use crate::numbers;
 use crate::refusal::Refusal;
 use crate::rotor::Turning;
 use crate::rotor::alone;
@@ -79,6 +80,8 @@ pub fn with_runs(
     wishes: &FitOptions,
 ) -> Result<Identified, Refusal> {
     distinct_names(&benches)?;
+    no_copies(&benches)?;
+    two_signals(&benches)?;
     let of_air = match wishes.closed_loop {
         true => [1.0; 2],
         false => wishes
@@ -90,6 +93,8 @@ pub fn with_runs(
         .iter_mut()
         .chain(runs.iter_mut().flatten())
         .for_each(|b| air.bring(b));
+    let told: Result<Vec<_>, Refusal> = benches.iter().map(|bench| numbers::told(bench, None)).collect();
+    let told = told?.concat();
     let balanced: Vec<Bench> = benches.iter().map(balanced).collect();
     let voltage = dependence(&balanced).filter(|_| !wishes.closed_loop);
     let voltage = match wishes.voltage_exponent {
@@ -103,9 +108,9 @@ pub fn with_runs(
     let has = |kind| benches.iter().any(|b| b.kind == kind);
     let read = benches.iter().chain(runs.iter().flatten());
     let mut warnings: Vec<String> = read.flat_map(Bench::offsets_told).collect();
+    warnings.extend(air.doubt());
     let pair = if has(Kind::Pair) {
-        two_signals(&benches)?;
-        let pair = pair::identify(&benches, voltage.as_ref(), wishes)?;
+        let pair = pair::identify(&benches, voltage.as_ref(), wishes, &told)?;
         warnings.extend(pair.warnings.clone());
         let of_runs = with_alone(pair, &runs, voltage.as_ref(), &mut warnings);
         Some(of_runs?)
@@ -120,6 +125,9 @@ pub fn with_runs(
     }
     if has(Kind::Pair) && has(Kind::SingleRotor) {
         warnings.push("single-rotor files serve the voltage exponents only, not the pair's map".into());
+    }
+    if wishes.pack_v.is_some() && exponents.is_none() && !wishes.closed_loop {
+        warnings.push("--cells has nothing to work on without an exponent: --voltage-exponent 1.75 beside it writes [voltage]".into());
     }
     let reference_v = reference(pair.as_ref(), voltage.as_ref(), wishes.reference_v, &mut warnings)?;
     in_pack(reference_v, wishes.pack_v)?;
@@ -229,7 +237,7 @@ fn two_signals(benches: &[Bench]) -> Result<(), Refusal> {
     let pairs = benches.iter().filter(|bench| bench.kind == Kind::Pair);
     let files: Vec<&str> = pairs.clone().map(|bench| bench.file.as_str()).collect();
     let mut points = pairs.flat_map(|bench| &bench.points);
-    match points.all(|p| is_one_signal([p.u, p.l])) {
+    match !files.is_empty() && points.all(|p| is_one_signal([p.u, p.l])) {
         false => Ok(()),
         true => Err(Refusal::of(
             files.join(", "),
@@ -251,6 +259,30 @@ fn distinct_names(benches: &[Bench]) -> Result<(), Refusal> {
             &b.file,
             "the name is given twice",
             "each file once, under its own name",
+        )),
+    }
+}
+
+/// Refuses a file that is a copy of another: it repeats nothing, and narrows every interval.
+fn no_copies(benches: &[Bench]) -> Result<(), Refusal> {
+    let rows = |bench: &Bench| {
+        format!(
+            "{:?}",
+            bench
+                .points
+                .iter()
+                .map(|p| Point { line: 0, ..*p })
+                .collect::<Vec<_>>()
+        )
+    };
+    let all: Vec<String> = benches.iter().map(rows).collect();
+    let is_copy = |k: &usize| all[..*k].contains(&all[*k]);
+    match (0..all.len()).find(is_copy) {
+        None => Ok(()),
+        Some(k) => Err(Refusal::of(
+            &benches[k].file,
+            "its rows are those of another file in every digit: a copy is no repeat",
+            "each file once",
         )),
     }
 }

@@ -36,6 +36,7 @@ pub mod fact;
 pub mod fit;
 pub mod fragment;
 pub mod identified;
+pub mod numbers;
 pub mod pair_file;
 pub mod paper;
 pub mod plan;

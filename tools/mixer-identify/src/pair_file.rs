@@ -1,5 +1,6 @@
 //! A file with the model of a pair: what `identify` and `predict` write, or a whole airframe's.
 
+use mixer_compiler::diagnostic::kind::{self, Kind};
 use toml_edit::{DocumentMut, Item};
 
 use super::fragment::POWER_BIAS;
@@ -17,7 +18,10 @@ impl PairFile {
     /// # Errors
     /// A text that is no TOML or has no `[pair]`.
     pub fn read(name: &str, text: &str) -> Result<PairFile, String> {
-        let document: DocumentMut = text.parse().map_err(|error| format!("{name}: {error}"))?;
+        let document: DocumentMut = text.parse().map_err(|error| match kind::of(text) {
+            Kind::Airframe | Kind::Pair => format!("{name}: {error}"),
+            other => format!("{name}: this is {}, with -o pair.toml for --pair", other.told()),
+        })?;
         if !document.contains_key("pair") {
             return Err(format!(
                 "{name}: no [pair] in it; `cargo mixer identify BENCH.csv -o pair.toml` writes one"

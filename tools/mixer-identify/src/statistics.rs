@@ -34,3 +34,10 @@ pub(crate) fn rms(values: impl IntoIterator<Item = f64>) -> f64 {
     let (sum, count) = values.fold((0.0, 0), |(sum, count), x| (sum + x * x, count + 1));
     (sum / f64::from(count)).sqrt()
 }
+
+/// The middle one of the finite ones; none where there are none.
+pub(crate) fn median(values: impl IntoIterator<Item = f64>) -> Option<f64> {
+    let mut finite: Vec<f64> = values.into_iter().filter(|x| x.is_finite()).collect();
+    finite.sort_by(f64::total_cmp);
+    finite.get(finite.len() / 2).copied()
+}

@@ -80,6 +80,21 @@ fn read_all(texts: &[Text], settings: &Settings) -> Result<Vec<Bench>, Vec<Refus
     }
 }
 
+/// Refuses an option that had nothing to work on in any of the files that were read by it.
+fn in_use(benches: &[&Bench]) -> Result<(), Refusal> {
+    let Some((first, others)) = benches.split_first() else {
+        return Ok(());
+    };
+    let is_idle = |option: &&String| others.iter().all(|bench| bench.idle_options.contains(option));
+    match first.idle_options.iter().find(is_idle) {
+        None => Ok(()),
+        Some(option) => Err(Refusal::general(
+            format!("{option} has nothing to work on: no file has such a column"),
+            "no such option, or the column that is meant: --column ROLE=HEADER",
+        )),
+    }
+}
+
 /// Identifies a pair from maps, and its rotors alone from `runs` of the upper and of the lower one.
 ///
 /// # Errors
@@ -92,7 +107,11 @@ pub fn identify(
     let benches = read_all(maps, settings)?;
     let run = |run: Option<&Text>| run.map(|run| read(run, settings)).transpose();
     let [upper, lower] = runs;
-    let found = run(upper).and_then(|upper| with_runs(benches, [upper, run(lower)?], &settings.wishes));
+    let found = run(upper).and_then(|upper| {
+        let runs = [upper, run(lower)?];
+        in_use(&benches.iter().chain(runs.iter().flatten()).collect::<Vec<_>>())?;
+        with_runs(benches, runs, &settings.wishes)
+    });
     let mut found = found.map_err(|refusal| vec![refusal])?;
     found.options.clone_from(&settings.options);
     Ok(Answer {
@@ -131,6 +150,8 @@ pub fn predict(
     let mut maps = read_all(maps, &how.map)?;
     let run = |text: &Text| read(text, &how.run).map_err(|refusal| vec![refusal]);
     let (mut upper, mut lower) = (run(upper)?, lower.map(run).transpose()?);
+    in_use(&[&upper].into_iter().chain(&lower).collect::<Vec<_>>()).map_err(|refusal| vec![refusal])?;
+    in_use(&maps.iter().collect::<Vec<_>>()).map_err(|refusal| vec![refusal])?;
     // That of the voltage less 1, and 1 where a speed is held.
     let by_density = how.known.exponents.map(|k| if k == 0.0 { 1.0 } else { k - 1.0 });
     let air = Air::of([&upper].into_iter().chain(&lower).chain(&maps), by_density);
@@ -138,6 +159,7 @@ pub fn predict(
     benches.for_each(|bench| air.bring(bench));
     let read = [&upper].into_iter().chain(&lower).chain(&maps);
     let mut warnings: Vec<String> = read.flat_map(Bench::passed_over).collect();
+    warnings.extend(air.doubt());
     let mut single = |run: &Bench| Single::of(run, &how.known, &mut warnings);
     let runs = single(&upper).and_then(|upper| Ok((upper, lower.as_ref().map(single).transpose()?)));
     let found =

@@ -14,7 +14,7 @@ use mixer_identify::identified::Settings;
 use mixer_identify::refusal::Refusal;
 use mixer_identify::texts::{Answer, Prediction, identify};
 
-use crate::bench_args::{AirArgs, ReadingArgs, exponents, positive, throttle_box};
+use crate::bench_args::{AirArgs, ReadingArgs, exponents, of, throttle_box};
 use crate::bench_files::{self, Reader};
 use crate::commands::predict::{self, RotorArgs};
 use crate::pack::PackArgs;
@@ -51,7 +51,7 @@ pub struct IdentifyArgs {
     #[command(flatten)]
     pub reading: ReadingArgs,
     /// Reference voltage, V [default: mean of the rows].
-    #[arg(long, value_name = "VOLT", value_parser = positive)]
+    #[arg(long, value_name = "VOLT", value_parser = of("voltage"))]
     pub reference_voltage: Option<f64>,
     /// A run of the upper rotor alone, the lower one at rest: `[pair.lower_out]`, for when the
     /// lower rotor is out.

@@ -17,7 +17,7 @@ use mixer_identify::texts::{self, Answer, Prediction, Text};
 
 use crate::Done;
 use crate::bench_args;
-use crate::bench_args::{AirArgs, ReadingArgs, positive, throttle_box, within};
+use crate::bench_args::{AirArgs, ReadingArgs, of, throttle_box};
 use crate::bench_files::{self, Reader};
 use crate::pack::PackArgs;
 use crate::place::Place;
@@ -40,7 +40,7 @@ pub struct PredictArgs {
     #[command(flatten)]
     pub reading: ReadingArgs,
     /// Bring the rows of the run to this voltage, V [default: their mean].
-    #[arg(long, value_name = "VOLT", value_parser = positive)]
+    #[arg(long, value_name = "VOLT", value_parser = of("voltage"))]
     pub reference_voltage: Option<f64>,
     /// Exponent of thrust and of torque in (V / reference)^k, or one for both [default: 1.75, the
     /// median of 104 motors with propellers].
@@ -60,9 +60,6 @@ pub struct PredictArgs {
     pub place: Place,
 }
 
-/// Units in which lengths are given by mistake.
-const LENGTHS: [(f64, f64, &str); 3] = [(0.0254, 0.0, "inches"), (0.001, 0.0, "mm"), (0.01, 0.0, "cm")];
-
 /// What is known of the rotors beside the run.
 #[derive(Debug, Clone, Default, Args)]
 pub struct RotorArgs {
@@ -70,19 +67,19 @@ pub struct RotorArgs {
     #[arg(long, value_name = "RUN.csv")]
     pub lower_single: Option<PathBuf>,
     /// Distance of the rotors over their diameter, z/D [default: 0.25].
-    #[arg(long, value_name = "RATIO", value_parser = |text: &str| within(text, [0.02, 3.0], "", &[(0.01, 0.0, "per cent")]), conflicts_with = "spacing")]
+    #[arg(long, value_name = "RATIO", value_parser = of("spacing over diameter"), conflicts_with = "spacing")]
     pub spacing_ratio: Option<f64>,
     /// Distance of the rotors, m.
-    #[arg(long, value_name = "METRE", value_parser = |text: &str| within(text, [0.005, 2.0], " m", &LENGTHS), requires = "diameter")]
+    #[arg(long, value_name = "METRE", value_parser = of("spacing"), requires = "diameter")]
     pub spacing: Option<f64>,
     /// Diameter of the propeller, m.
-    #[arg(long, value_name = "METRE", value_parser = |text: &str| within(text, [0.03, 3.0], " m", &LENGTHS))]
+    #[arg(long, value_name = "METRE", value_parser = of("diameter"))]
     pub diameter: Option<f64>,
     /// Torque per thrust, m, for a run without torque [default: 0.048 of the diameter].
-    #[arg(long, value_name = "METRE", value_parser = positive)]
+    #[arg(long, value_name = "METRE", value_parser = of("torque per thrust"))]
     pub kappa: Option<f64>,
     /// Voltage of the run, V, where it has no column for it.
-    #[arg(long, value_name = "VOLT", value_parser = positive)]
+    #[arg(long, value_name = "VOLT", value_parser = of("voltage"))]
     pub run_voltage: Option<f64>,
 }
 

@@ -11,12 +11,13 @@ use mixer_compiler::Source;
 use mixer_compiler::airframe::Basis;
 use mixer_compiler::diagnostic::Code;
 use mixer_compiler::model::wake::mean_torque;
-use mixer_identify::bench::Bench;
+use mixer_identify::bench::{Bench, Point};
 use mixer_identify::fit::polynomial::Polynomial;
 use mixer_identify::fragment;
 use mixer_identify::identified::{Identified, Settings, from_benches};
+use mixer_identify::numbers::{Number, Run};
 
-use crate::maps;
+use crate::{maps, measured};
 
 const BASES: [&str; 3] = ["biquadratic", "cubic", "quartic"];
 
@@ -266,8 +267,233 @@ fn warnings(bench: Bench) -> String {
     format!("{notes}\n{told}")
 }
 
+/// Least and greatest of every number over the right files, within its limits.
+#[test]
+#[ignore = "needs MIXER_BENCH_DATA"]
+fn numbers_of_right_files_are_measured() {
+    let mut found: BTreeMap<&str, (Number, Vec<f64>)> = BTreeMap::new();
+    let files = maps::named(&["map10x10", "single_rotor", "bottom_rotor"]);
+    for path in files
+        .iter()
+        .filter(|path| !path.to_string_lossy().contains(DRIFTED))
+    {
+        let bench = read_one(path, &Settings::default()).unwrap_or_else(|refusal| panic!("{refusal}"));
+        let inches = rotors(path)
+            .split("in")
+            .next()
+            .map(|inches| inches.replace('p', ".").parse::<f64>());
+        let diameter = inches.expect("a diameter").expect("a number") * 0.0254;
+        for (_, number, [value, error]) in Run::new(&bench, Some(diameter)).values() {
+            let [low, high] = number.limits;
+            assert!(
+                value + 4.0 * error >= low && value - 4.0 * error <= high,
+                "{}: {} {value}",
+                path.display(),
+                number.name
+            );
+            found
+                .entry(number.name)
+                .or_insert((*number, Vec::new()))
+                .1
+                .push(value);
+        }
+    }
+    let rows = found.values().map(|(number, values)| {
+        let [least, most] =
+            [f64::min, f64::max].map(|of| values.iter().copied().reduce(of).expect("a value"));
+        let [low, high] = number.limits.map(|limit| {
+            if limit.is_finite() {
+                limit.to_string()
+            } else {
+                String::new()
+            }
+        });
+        format!(
+            "\"{}\",{low},{high},{least:.3},{most:.3},{}\n",
+            number.name,
+            values.len()
+        )
+    });
+    let text = rows.fold(
+        "number,low,high,least,greatest,files\n".to_owned(),
+        |text, row| text + &row,
+    );
+    measured::hold("numbers.csv", &text);
+}
+
+/// A mistake in a bench: its name, the words of its cause, what it does.
+type Mistake = (&'static str, &'static str, fn(&mut Vec<Point>));
+
+/// Each point gets what `of` makes of it and of the one before.
+fn with_before(points: &mut [Point], of: fn(&mut Point, &Point)) {
+    let given = points.to_vec();
+    for (point, before) in points.iter_mut().skip(1).zip(&given) {
+        of(point, before);
+    }
+}
+
+fn throttles(points: &mut Vec<Point>, of: fn(f64) -> f64) {
+    points.iter_mut().for_each(|p| (p.u, p.l) = (of(p.u), of(p.l)));
+    points.retain(|p| [p.u, p.l].iter().all(|t| (0.005..1.02).contains(t)));
+}
+
+fn greatest_thrust(points: &[Point]) -> f64 {
+    points.iter().map(|p| p.thrust).fold(0.0, f64::max)
+}
+
+const MISTAKES: [Mistake; 13] = [
+    (
+        "torque of an arm 2.5 times too long",
+        "a force at an arm",
+        |points| {
+            points
+                .iter_mut()
+                .for_each(|p| (p.torque, p.shaft_w) = (2.5 * p.torque, 2.5 * p.shaft_w));
+        },
+    ),
+    (
+        "lower stand in pounds under kg",
+        "one stand is in another unit",
+        |points| {
+            points.iter_mut().for_each(|p| {
+                p.thrust -= 0.546 * p.cells[1].abs();
+                p.cells[1] *= 0.454;
+            });
+        },
+    ),
+    (
+        "load cell 2 % up at rest",
+        "load cells read something at rest",
+        |points| {
+            let offset = 0.02 * greatest_thrust(points);
+            points.iter_mut().for_each(|p| p.thrust += offset);
+        },
+    ),
+    (
+        "load cell 2 % down at rest",
+        "load cells read something at rest",
+        |points| {
+            let offset = 0.02 * greatest_thrust(points);
+            points.iter_mut().for_each(|p| p.thrust -= offset);
+        },
+    ),
+    (
+        "throttle of pulses of another range",
+        "another range of pulses",
+        |points| {
+            throttles(points, |t| (t - 0.1) / 0.84);
+        },
+    ),
+    ("throttle that was linearised", "something linearised", |points| {
+        throttles(points, |t| 0.35 * t + 0.65 * t * t);
+    }),
+    ("voltage a row late", "that of the row before", |points| {
+        with_before(points, |p, before| {
+            (p.voltage, p.imbalance) = (before.voltage, before.imbalance)
+        });
+    }),
+    (
+        "voltages of the rotors exchanged",
+        "voltages of the rotors are exchanged",
+        |points| {
+            points.iter_mut().for_each(|p| p.imbalance = -p.imbalance);
+        },
+    ),
+    ("one meter 5 % up", "two meters of one supply", |points| {
+        points.iter_mut().for_each(|p| p.imbalance -= 0.025);
+    }),
+    ("voltage of the pack at rest", "pack at rest", |points| {
+        let volts = points.iter().map(|p| p.voltage).fold(0.0, f64::max) + 0.1;
+        points
+            .iter_mut()
+            .for_each(|p| (p.voltage, p.imbalance) = (volts, 0.0));
+    }),
+    (
+        "10 % of the row before",
+        "what the one before it gave",
+        |points| {
+            for k in 1..points.len() {
+                let before = points[k - 1];
+                let p = &mut points[k];
+                (p.thrust, p.torque) = (
+                    0.9 * p.thrust + 0.1 * before.thrust,
+                    0.9 * p.torque + 0.1 * before.torque,
+                );
+            }
+        },
+    ),
+    ("a moving average of three rows", "a moving average", |points| {
+        let given = points.clone();
+        for k in 1..points.len() - 1 {
+            let mean = |of: fn(&Point) -> f64| given[k - 1..=k + 1].iter().map(of).sum::<f64>() / 3.0;
+            (points[k].thrust, points[k].torque) = (mean(|p| p.thrust), mean(|p| p.torque));
+        }
+    }),
+    ("thrust and torque a row late", "in disorder", |points| {
+        with_before(points, |p, before| {
+            (p.thrust, p.torque) = (before.thrust, before.torque)
+        });
+    }),
+];
+
+/// One mistake of each kind in five real maps, in their own order and in that of a plan: told by its cause, by
+/// another one, or not.
+#[test]
+#[ignore = "needs MIXER_BENCH_DATA"]
+fn planted_mistakes_are_told_by_their_cause() {
+    let maps = maps::named(&["map10x10_full_range"]);
+    let maps = maps
+        .iter()
+        .filter(|path| !path.to_string_lossy().contains(DRIFTED));
+    let benches: Vec<Bench> = maps
+        .map(|path| read_one(path, &Settings::default()).unwrap_or_else(|refusal| panic!("{refusal}")))
+        .collect();
+    assert_eq!(benches.len(), 5);
+    let drawn = |bench: &Bench| {
+        let count = bench.points.len();
+        let points = (0..count).map(|k| bench.points[37 * k % count]);
+        let points = points.enumerate().map(|(k, p)| Point {
+            line: 2 + k as u64,
+            ..p
+        });
+        Bench {
+            points: points.collect(),
+            rests: Vec::new(),
+            ..bench.clone()
+        }
+    };
+    let mut text = "mistake,order,maps,by its cause,by another one,not told\n".to_owned();
+    for (name, cause, plant) in MISTAKES {
+        for (order, arranged) in [("grid", Bench::clone as fn(&Bench) -> Bench), ("drawn", drawn)] {
+            let mut counts = [0; 3];
+            for bench in benches.iter().map(arranged) {
+                let mut wrong = bench.clone();
+                plant(&mut wrong.points);
+                let before = warnings(bench);
+                let told = warnings(wrong);
+                let more = told.lines().any(|line| {
+                    !TRUE_WORDS.iter().any(|words| line.contains(words)) && !before.contains(line)
+                });
+                counts[if told.contains(cause) {
+                    0
+                } else {
+                    1 + usize::from(!more)
+                }] += 1;
+            }
+            text += &format!(
+                "{name},{order},{},{},{},{}\n",
+                benches.len(),
+                counts[0],
+                counts[1],
+                counts[2]
+            );
+        }
+    }
+    measured::hold("planted.csv", &text);
+}
+
 /// The same rows with something done to each.
-fn changed(bench: &Bench, change: impl Fn(&mut mixer_identify::bench::Point)) -> Bench {
+fn changed(bench: &Bench, change: impl Fn(&mut Point)) -> Bench {
     let mut bench = bench.clone();
     bench.points.iter_mut().for_each(change);
     bench
@@ -283,10 +509,15 @@ fn mistakes_in_real_benches_are_told() {
         let name = map.display();
         let bench = read_one(map, &Settings::default()).unwrap_or_else(|refusal| panic!("{refusal}"));
         let swapped = changed(&bench, |p| (p.u, p.l, p.torque) = (p.l, p.u, -p.torque));
-        assert!(warnings(swapped).contains(exchanged), "{name}");
+        // Of rows that stand out nothing else is asked.
+        assert!(
+            warnings(swapped).contains(exchanged) || name.to_string().contains(DRIFTED),
+            "{name}"
+        );
         let lowest = bench.points.iter().map(|p| p.u).fold(1.0, f64::min);
         let greatest = bench.points.iter().map(|p| p.thrust).fold(0.0, f64::max);
-        if lowest < 0.15 {
+        // Of the shape of rows that the throttles explain badly nothing is said.
+        if lowest < 0.15 && !name.to_string().contains(DRIFTED) {
             full_range += 1;
             let torque = bench.points.iter().map(|p| p.torque.abs()).fold(0.0, f64::max);
             let offsets: [[f64; 2]; 4] = [[0.02, 0.0], [-0.02, 0.0], [0.0, 0.06], [0.0, -0.06]];

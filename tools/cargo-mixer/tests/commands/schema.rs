@@ -142,7 +142,7 @@ fn the_parser_agrees_key_by_key() {
             "name = \"two\"\n{}{layout}{alone}",
             pair.replace(
                 "upper_spin",
-                "bench_options = [\"--swap\"]\nstronger = \"lower\"\nupper_spin"
+                "bench_options = [\"--swap\"]\nbench_v = [14.0, 15.0]\nstronger = \"lower\"\nupper_spin"
             )
         ),
         format!("name = \"three\"\n{}{layout}", with_law(&pair, points)),

@@ -153,6 +153,13 @@ impl Columns {
             .flatten()
     }
 
+    /// The column of a role.
+    pub(crate) fn of_role(&self, role: &str) -> Option<&Column> {
+        let (_, quantity, side) = ROLES.iter().find(|(known, ..)| *known == role)?;
+        let Split { whole, rotors } = &self[*quantity];
+        side.map_or(whole, |side| &rotors[side]).as_ref()
+    }
+
     /// The place of a quantity's column.
     fn slot(&mut self, quantity: Quantity, side: Option<usize>) -> &mut Option<Column> {
         let Split { whole, rotors } = &mut self[quantity];
@@ -292,13 +299,27 @@ impl Columns {
     fn by_name(&mut self, headings: &[Heading], names: &[Name], by_hand: &ByHand, lacks: &mut Vec<Lack>) {
         use Quantity::{Current, Power, Speed, Throttle, Thrust, Torque, Voltage};
         let prefixes = distinct_prefixes(names);
-        for (index, (name, heading)) in names.iter().zip(headings).enumerate() {
-            let Some(quantity) = name.quantity() else { continue };
+        let place = |(index, name): (usize, &Name)| {
+            let quantity = name.quantity()?;
             let side = match (quantity, name.side(&prefixes)) {
                 (Throttle | Voltage | Speed, None) => Some(0),
                 (Throttle | Thrust | Torque | Voltage | Current | Power | Speed, side) => side,
                 _ => None,
             };
+            Some((index, quantity, side))
+        };
+        let places: Vec<_> = names.iter().enumerate().filter_map(place).collect();
+        // Beside a column of the quantity one in a unit of something else, as the load cell's millivolts, is another's.
+        let is_other = |&(index, quantity, _): &(usize, Quantity, Option<usize>)| {
+            let unit = names[index].unit.as_ref().or(headings[index].below.as_ref());
+            unit.is_some_and(|unit| units::scale(quantity, unit).is_none())
+        };
+        let is_rival = |one: &&(usize, Quantity, Option<usize>)| {
+            let mut same = places.iter().filter(|two| (two.1, two.2) == (one.1, one.2));
+            !is_other(one) || same.all(is_other)
+        };
+        for &(index, quantity, side) in places.iter().filter(is_rival) {
+            let (name, heading) = (&names[index], &headings[index]);
             let role = ROLES.iter().find(|(_, of, at)| (*of, *at) == (quantity, side));
             let Some(&(role, ..)) = role else { continue };
             if by_hand.columns.iter().any(|(r, _)| r == role) {

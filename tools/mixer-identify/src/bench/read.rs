@@ -8,7 +8,6 @@ use std::fmt;
 use mixer_compiler::atmosphere;
 use serde::Serialize;
 
-use crate::bench::air;
 use crate::bench::header::{ABOVE_ONE, ByHand, Column, Columns, Split, is_unit, known};
 use crate::bench::number::{Cell, is_blank, is_missing};
 use crate::bench::sheet::{Sheet, names};
@@ -94,6 +93,22 @@ pub struct Sample {
     pub speed: [f64; 2],
 }
 
+impl Sample {
+    /// Whether it reads the same, in every digit.
+    pub(crate) fn equals(&self, other: &Sample) -> bool {
+        let numbers = |s: &Sample| {
+            let splits = [s.thrust, s.torque].map(|of| [of.whole, of.rotors[0], of.rotors[1]]);
+            let numbers = [s.throttle, s.voltage, s.speed].concat().into_iter();
+            numbers
+                .chain(splits.concat())
+                .chain([s.power_w])
+                .map(f64::to_bits)
+                .collect::<Vec<u64>>()
+        };
+        numbers(self) == numbers(other)
+    }
+}
+
 /// The rotors' load cells in the order of thrust and torque, each of the upper and of the lower rotor.
 pub(crate) const ROTOR_CELLS: [&str; 4] = [
     "thrust of the upper rotor",
@@ -113,10 +128,12 @@ pub struct Log {
     pub samples: Vec<Sample>,
     /// Rows that could not be read.
     pub refused: Vec<RefusedRow>,
-    /// The air in the mean of the rows, where columns tell it.
-    pub air: Option<air::BenchAir>,
+    /// Temperature, K, pressure, Pa, and density of the air, kg/m3, of the rows in which columns tell the last.
+    pub air: Vec<[f64; 3]>,
     /// What was passed over or taken for something else.
     pub notes: Vec<String>,
+    /// Options that had nothing to work on here.
+    pub idle_options: Vec<String>,
 }
 
 /// How to read a file.
@@ -178,6 +195,7 @@ pub fn read(name: &str, bytes: &[u8], reading: &Reading) -> Result<Log, Refusal>
     let cells = Cells {
         pwm_range: reading.pwm_range.unwrap_or(PWM_RANGE),
         pwm_given: reading.pwm_range.is_some(),
+        has_pulses: std::cell::Cell::new(false),
         decimals,
         most: header
             .iter()
@@ -185,8 +203,7 @@ pub fn read(name: &str, bytes: &[u8], reading: &Reading) -> Result<Log, Refusal>
             .map_or(0, |last| last + 1),
         least: if sheet.by_blanks { header.len() } else { 0 },
     };
-    let (mut samples, mut refused, mut asides, mut densities) =
-        (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    let (mut samples, mut refused, mut asides, mut air) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     for (line, record) in &sheet.rows {
         if let Some(what) = aside(record) {
             let names = names(record);
@@ -207,7 +224,7 @@ pub fn read(name: &str, bytes: &[u8], reading: &Reading) -> Result<Log, Refusal>
         match cells.sample(*line, &columns, record) {
             Ok(sample) => {
                 samples.push(sample);
-                densities.push(cells.density(&columns, record));
+                air.push(cells.air(&columns, record));
             }
             Err(fault) => refused.push(RefusedRow::new(name, *line, fault)),
         }
@@ -221,12 +238,15 @@ pub fn read(name: &str, bytes: &[u8], reading: &Reading) -> Result<Log, Refusal>
         };
         notes.push(format!("{name}:{line} is passed over: {what}{more}"));
     }
-    densities.retain(|density| density.is_finite());
-    let air = (!densities.is_empty()).then(|| air::BenchAir {
-        density_kg_m3: densities.iter().sum::<f64>() / densities.len() as f64,
-        from: format!("columns of {name}"),
-    });
+    air.retain(|[_, _, density]| density.is_finite());
+    let pulses = (cells.pwm_given && !cells.has_pulses.get()).then(|| "--pwm-range".to_owned());
+    let units = by_hand
+        .units
+        .iter()
+        .filter(|(role, _)| role != "lower" && columns.of_role(role).is_none());
+    let units = units.map(|(role, unit)| format!("--unit {role}={unit}"));
     Ok(Log {
+        idle_options: pulses.into_iter().chain(units).collect(),
         name: name.to_owned(),
         columns,
         samples,
@@ -285,6 +305,8 @@ fn aside(record: &csv::StringRecord) -> Option<&'static str> {
 struct Cells {
     pwm_range: [f64; 2],
     pwm_given: bool,
+    /// Whether a throttle was a pulse width.
+    has_pulses: std::cell::Cell<bool>,
     /// Decimal mark by column.
     decimals: Vec<char>,
     /// Most cells that have a name, and least of a row.
@@ -355,12 +377,13 @@ impl Cells {
         }
     }
 
-    /// Density of the air, kg/m3; NaN where the row does not tell it.
-    fn density(&self, columns: &Columns, record: &csv::StringRecord) -> f64 {
+    /// Temperature, pressure and density of the air; NaN where the row does not tell them.
+    fn air(&self, columns: &Columns, record: &csv::StringRecord) -> [f64; 3] {
         let of = |quantity| self.value(&columns[quantity].whole, record).unwrap_or(f64::NAN);
+        let [kelvin, pascal] = [of(Quantity::Temperature), of(Quantity::Pressure)];
         match columns[Quantity::Density].whole {
-            Some(_) => of(Quantity::Density),
-            None => atmosphere::density(of(Quantity::Pressure), of(Quantity::Temperature)),
+            Some(_) => [f64::NAN, f64::NAN, of(Quantity::Density)],
+            None => [kelvin, pascal, atmosphere::density(pascal, kelvin)],
         }
     }
 
@@ -380,6 +403,7 @@ impl Cells {
             Scale::Factor(1.0) if self.pwm_given && raw > 1.5 => Some(raw),
             _ => None,
         };
+        self.has_pulses.set(self.has_pulses.get() || us.is_some());
         let throttle = us.map_or(column.scale.of(raw), |us| (us - low) / (high - low));
         let why = match column.scale {
             _ if us.is_some_and(|us| us > 0.0 && throttle < -AT_REST) => {

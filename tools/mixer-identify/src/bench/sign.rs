@@ -23,7 +23,7 @@ use crate::bench::header::{Column, Columns, Split};
 use crate::bench::read::Sample;
 use crate::bench::units::Quantity;
 use crate::refusal::Refusal;
-use crate::statistics::extent;
+use crate::statistics::{extent, mean_of_finite, rms};
 
 /// How to find a sign.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -184,9 +184,6 @@ pub fn pair(
         SignChoice::Given(signs) => signs,
         SignChoice::Auto => thrust.positive(),
     };
-    if !thrust.total {
-        compare_sides(samples, signs, notes);
-    }
     let sums = thrust.sums(signs, notes).into_iter().zip(torques).collect();
     let signs = Signs {
         thrust: thrust.told(signs),
@@ -223,7 +220,9 @@ fn pair_torque(
     let mut sums = torque.sums(signs, notes);
     constant(file, &sums)?;
     let [by_upper, by_lower] = slopes(torque.samples, &sums);
-    no_magnitudes(file, by_upper, by_lower)?;
+    if follows(torque.samples, &sums, [by_upper, by_lower]) {
+        no_magnitudes(file, by_upper, by_lower)?;
+    }
     if by_lower < by_upper {
         sums.iter_mut().for_each(|q| *q = -*q);
         signs = signs.map(|s| -s);
@@ -241,6 +240,15 @@ fn pair_torque(
         }
     }
     Ok((torque.told(signs), sums))
+}
+
+/// Whether the torque follows the throttles at all, by half of its variance: in disorder its slopes say nothing.
+fn follows(samples: &[Sample], torque: &[f64], [a, b]: [f64; 2]) -> bool {
+    let rows = || samples.iter().zip(torque).filter(|(_, q)| q.is_finite());
+    let left =
+        |(s, q): (&Sample, &f64)| q - a * s.throttle[0] * s.throttle[0] - b * s.throttle[1] * s.throttle[1];
+    let mean = mean_of_finite(torque.iter().copied());
+    rms(rows().map(left)) < 0.7 * rms(rows().map(|(_, q)| q - mean))
 }
 
 /// Refuses a torque that grows with both throttles, by these slopes over their squares.
@@ -298,7 +306,7 @@ fn constant(file: &str, torque: &[f64]) -> Result<(), Refusal> {
     let reason = match low > high {
         true => "the torque is empty in every row".to_owned(),
         false if high - low <= 1e-6 * high.abs().max(low.abs()) => {
-            format!("the torque is constant at {low} N m in every row")
+            format!("the torque is constant at {low:.4} N m in every row that is left")
         }
         false => return Ok(()),
     };
@@ -324,26 +332,6 @@ fn slopes(samples: &[Sample], torque: &[f64]) -> [f64; 2] {
         return if uq + lq > 0.0 { [1.0, -1.0] } else { [-1.0, 1.0] };
     }
     [(uq * ll - lq * ul) / det, (lq * uu - uq * ul) / det]
-}
-
-/// The rotor in the wake gives clearly less at equal commands: says so when that is the first one.
-fn compare_sides(samples: &[Sample], signs: [f64; 2], notes: &mut Vec<String>) {
-    let level = samples
-        .iter()
-        .filter(|s| (s.throttle[0] - s.throttle[1]).abs() < 0.05);
-    let (upper, lower) = level.fold((0.0, 0.0), |(a, b), s| {
-        (
-            a + signs[0] * s.thrust.rotors[0],
-            b + signs[1] * s.thrust.rotors[1],
-        )
-    });
-    if upper < 0.9 * lower {
-        notes.push(format!(
-            "at equal commands the rotor taken as upper gives {:.2} of the other's thrust: \
-             it is probably the one in the wake (--swap exchanges them)",
-            upper / lower
-        ));
-    }
 }
 
 #[cfg(test)]

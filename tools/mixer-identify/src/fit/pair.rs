@@ -16,6 +16,7 @@ use crate::fit::uncertainty::{Uncertainty, by_voltage};
 use crate::fit::voltage::Voltage;
 use crate::fit::wishes::FitOptions;
 use crate::fit::{Deficient, Design, Fit, fit, range};
+use crate::numbers::Told;
 use crate::refusal::Refusal;
 use crate::rotor::Alone;
 
@@ -72,7 +73,17 @@ pub struct Pair {
 }
 
 /// Identifies the pair that the benches of [`Kind::Pair`] describe.
-pub fn identify(benches: &[Bench], voltage: Option<&Voltage>, wishes: &FitOptions) -> Result<Pair, Refusal> {
+///
+/// `told` are the numbers of the files that are outside; of their shape a drift is the better reason.
+///
+/// # Errors
+/// Files that do not give a map of one pair.
+pub(crate) fn identify(
+    benches: &[Bench],
+    voltage: Option<&Voltage>,
+    wishes: &FitOptions,
+    told: &[Told],
+) -> Result<Pair, Refusal> {
     let benches: Vec<&Bench> = benches.iter().filter(|b| b.kind == Kind::Pair).collect();
     let files = names(&benches);
     let mut warnings = Vec::new();
@@ -83,35 +94,41 @@ pub fn identify(benches: &[Bench], voltage: Option<&Voltage>, wishes: &FitOption
     let (cross_validation, outliers) =
         choose(&points, throttle_box, wishes).map_err(|reason| deficient(&files, reason))?;
     let basis = cross::chosen(&cross_validation).map_or(Basis::Biquadratic, |c| c.basis);
+    let all = points.len();
     if wishes.robust {
         points = without_outliers(&points, &outliers);
-    } else if !outliers.is_empty() {
-        let count = outliers.len();
-        warnings.push(format!("{count} rows stand out: --robust fits without them"));
     }
+    warnings.extend(standing_out(outliers.len(), all, wishes.robust));
 
     let design =
         Design::new(basis, &places(&points), throttle_box).map_err(|reason| deficient(&files, reason))?;
     let fits = channels(&points).map(|values| fit(&design, &values, throttle_box));
     one_pair(basis, &points, throttle_box, &fits, &mut warnings)?;
-    doubts::unexplained(&files, fits.each_ref(), &mut warnings)?;
+    let explained = |refusal: Refusal| Told::explains(told, refusal);
+    doubts::unexplained(&files, fits.each_ref(), &mut warnings).map_err(explained)?;
     let [thrust, torque] = fits.each_ref().map(|fit| fit.coefficients.as_slice());
     let fold = fold::examine(basis, thrust, torque, throttle_box);
-    let idle = idle(basis, &fits, &fold, &files, &mut warnings)?;
+    let idle = idle(basis, &fits, &fold, &files, &mut warnings).map_err(explained)?;
 
     let [thrust, torque] = fits;
     let sign_is_found = benches.iter().any(|bench| bench.signs.torque_policy == AUTO);
-    doubts::units(&files, &points, [&thrust, &torque], &mut warnings)?;
     // Other causes are judged by what a drift leaves: it looks like them.
     let drift = drift::examine(basis, &mut points, &mut warnings);
-    let judged = channels(&points).map(|values| fit(&design, &values, throttle_box));
-    // A constant in the torque looks as exchanged rotors do.
-    let lower_is_stronger = !doubts::tare(&points, judged.each_ref(), &mut warnings) && {
-        let torque_drifts = drift.iter().any(|shown| shown.of == "torque" && shown.is_told());
-        let asks = sign_is_found && !torque_drifts;
-        let by_hand = benches.iter().all(|bench| bench.sides_by_hand);
-        doubts::lower_is_stronger(basis, &judged[1], throttle_box, by_hand, asks, &mut warnings)
-    };
+    let judged = fit(&design, &channels(&points)[1], throttle_box);
+    let drifts = |file: &str| drift.iter().any(|shown| shown.file == file && shown.is_told());
+    let explains = |told: &&Told| !(told.of_shape() && drifts(&told.file));
+    let told: Vec<&Told> = told.iter().filter(explains).collect();
+    // A constant in the torque, and rows that stand out, look as exchanged rotors do.
+    let (mut asked, by_hand) = (Vec::new(), benches.iter().all(|bench| bench.sides_by_hand));
+    let torque_drifts = drift.iter().any(|shown| shown.of == "torque" && shown.is_told());
+    let asks = sign_is_found && !torque_drifts;
+    let is_above = doubts::lower_is_stronger(basis, &judged, throttle_box, by_hand, asks, &mut asked);
+    let at_rest = told.iter().any(|told| told.is_torque_at_rest());
+    if !at_rest && (wishes.robust || outliers.is_empty()) {
+        warnings.extend(asked);
+    }
+    let lower_is_stronger = is_above && !at_rest;
+    warnings.extend(told.into_iter().map(Told::sentence));
     let mean_v = mean_voltage(points.iter().map(|p| p.point)).map(|(mean, _)| mean);
     let brought = normalised_to_v.zip(mean_v).zip(voltage);
     let brought = brought.map_or([0.0; 2], |((to, from), voltage)| {
@@ -192,6 +209,22 @@ fn choose(
     let basis = cross::chosen(&candidates).map_or(Basis::Biquadratic, |c| c.basis);
     let outliers = confirmed(basis, points, &suspects, &clean, throttle_box);
     Ok((candidates, outliers))
+}
+
+/// Share of the rows up to which those that stand out are single ones.
+const SINGLE: f64 = 0.1;
+
+/// What is said of rows that stand out.
+fn standing_out(count: usize, all: usize, left_out: bool) -> Option<String> {
+    match count as f64 > SINGLE * all as f64 {
+        true => Some(format!(
+            "{count} of {all} rows stand out, too many for single bad rows: look for what they share (a propeller, a voltage, their \
+             place in the file), or measure again; --robust would hide it"
+        )),
+        false => {
+            (count > 0 && !left_out).then(|| format!("{count} rows stand out: --robust fits without them"))
+        }
+    }
 }
 
 fn without_outliers<'a>(points: &[Placed<'a>], outliers: &[Outlier]) -> Vec<Placed<'a>> {

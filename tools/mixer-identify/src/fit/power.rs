@@ -19,7 +19,7 @@ use crate::fit::basis::{ThrottleBox, monomials};
 use crate::fit::pair::Pair;
 use crate::fit::voltage::Voltage;
 use crate::fit::{distinct_pairs, ten_digits};
-use crate::statistics::{dot, rms, times};
+use crate::statistics::{dot, median, rms, times};
 
 /// Shares of full thrust at which vehicles hover.
 const SHARES: [f64; 9] = [0.30, 0.35, 0.40, 0.45, 0.50, 0.55, 0.60, 0.65, 0.70];
@@ -286,9 +286,7 @@ impl<'a> Hover<'a> {
 
 /// Refuses power that no propeller takes.
 fn plausible(points: &[Point]) -> Result<(), String> {
-    let mut rates: Vec<f64> = points.iter().map(|p| p.power_w / p.thrust).collect();
-    rates.sort_by(f64::total_cmp);
-    let median = rates[rates.len() / 2];
+    let median = median(points.iter().map(|p| p.power_w / p.thrust)).unwrap_or(f64::NAN);
     if median < 0.0 {
         return Err("power is negative: check the sign of voltage and current".into());
     }

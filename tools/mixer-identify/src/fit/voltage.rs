@@ -18,7 +18,8 @@ use serde::Serialize;
 
 use self::exponent::Row;
 pub use self::exponent::{Estimate, Exponent};
-use self::profile::{Regressors, off_span, profile};
+pub(crate) use self::profile::off_span;
+use self::profile::{Regressors, profile};
 use crate::bench::{Bench, Kind, Point};
 use crate::fit::basis::Centred;
 use crate::fit::range;

@@ -1,11 +1,11 @@
 //! A run of one rotor, or the table of its data sheet, as thrust and torque over throttle.
 
 use mixer_compiler::airframe::TYPICAL_EXPONENT;
-use mixer_compiler::model::TORQUE_PER_THRUST_M;
 use serde::Serialize;
 
 use crate::bench::{Bench, Kind, Point, equal_commands, mean_voltage};
 use crate::fit::distinct_pairs;
+use crate::numbers::{self, Told};
 use crate::refusal::Refusal;
 use crate::rotor::curve::{Curve, Rotor};
 use crate::statistics::{extent, rms};
@@ -14,7 +14,7 @@ use crate::statistics::{extent, rms};
 const FEWEST: usize = 5;
 /// Throttle below which a run says too little of the upper half.
 const REACHES: f64 = 0.7;
-/// Throttle up to which a run ends at full throttle.
+/// Throttle from which on the end of a run counts as full throttle.
 const FULL: f64 = 0.95;
 /// Misfit of a curve, rms of the greatest value, that real runs keep below; and one that no rotor
 /// has. Ten real runs have up to 0.013; two propellers that differ by a fifth, in one table,
@@ -95,17 +95,13 @@ impl Single {
                 ),
             ));
         }
+        let told = numbers::told(bench, known.diameter_m)?;
+        warnings.extend(told.iter().map(Told::sentence));
         let run_v = known.run_v.or(mean_voltage(&bench.points).map(|(mean, _)| mean));
         let (points, voltage_v) = at_one_voltage(bench, known, run_v, warnings)?;
         let points = &points;
         let measured = extent(points.iter().map(|p| p.u));
         enough(file, points, measured)?;
-        if measured[1] < FULL {
-            warnings.push(format!(
-                "{file} ends at a throttle of {:.2}: what is above is extrapolated",
-                measured[1]
-            ));
-        }
         let thrust = channel(file, "thrust", points, |p| p.thrust, warnings)?;
         let with_torque: Vec<Point> = points.iter().copied().filter(|p| p.torque.is_finite()).collect();
         let (torque, kappa_m) = if distinct(&with_torque) >= FEWEST {
@@ -126,8 +122,6 @@ impl Single {
             };
             (torque, Some(kappa))
         };
-        let full = [&thrust, &torque].map(|channel| channel.curve.at(measured[1]));
-        plausible(file, full, points, known.diameter_m)?;
         Ok(Single {
             file: file.clone(),
             points: points.len(),
@@ -150,55 +144,17 @@ impl Single {
         })
     }
 
+    /// The throttle at which the run ends, 1 where that is next to it.
+    pub(crate) fn end(&self) -> f64 {
+        match self.measured[1] < FULL {
+            true => (1e4 * self.measured[1] + 1e-6).floor() / 1e4,
+            false => 1.0,
+        }
+    }
+
     /// Whether a table of few rows is behind the curves.
     pub fn is_sparse(&self) -> bool {
         self.points < 10
-    }
-}
-
-/// Refuses what no rotor gives: thrust, N, and torque, N m, at the greatest throttle, and the diameter, m,
-/// where it is known.
-fn plausible(
-    file: &str,
-    [thrust, torque]: [f64; 2],
-    points: &[Point],
-    diameter: Option<f64>,
-) -> Result<(), Refusal> {
-    let d = diameter.unwrap_or(f64::NAN);
-    let area = 0.25 * std::f64::consts::PI * d * d;
-    // By momentum theory, in air of 1.2 kg/m3.
-    let ideal = |p: &Point| libm::pow(p.thrust, 1.5) / (2.0 * 1.2 * area).sqrt() / p.power_w;
-    let power = points.iter().filter(|p| p.u > REACHES && p.power_w > 0.0);
-    let all = [
-        ("torque per thrust in m", torque / thrust, TORQUE_PER_THRUST_M),
-        // Real runs of 11 to 28 inch: 0.045 to 0.062.
-        (
-            "torque per thrust in diameters",
-            torque / thrust / d,
-            [0.02, 0.15],
-        ),
-        // 120 to 190; racing quadrotors of 3 to 5 inch some 1,400.
-        ("disc loading in N/m2", thrust / area, [15.0, 2500.0]),
-        // 0.55 to 0.60, and a pair as much by both powers; 1.1 would be a pair by the power of one rotor.
-        (
-            "ideal power over electrical power",
-            power.map(ideal).fold(f64::NAN, f64::max),
-            [0.08, 0.95],
-        ),
-    ];
-    match all.iter().find(|(_, x, [low, high])| x < low || x > high) {
-        None => Ok(()),
-        Some((name, x, [low, high])) => Err(Refusal::of(
-            file,
-            format!(
-                "the {name} is {}, of rotors it is {low} to {high}: a unit is wrong, the diameter, or this is no run of ONE rotor",
-                format!("{x:.1e}").parse().unwrap_or(*x)
-            ),
-            format!(
-                "right units and diameter; where one signal drives both rotors of a pair, {}",
-                equal_commands(&[file])
-            ),
-        )),
     }
 }
 

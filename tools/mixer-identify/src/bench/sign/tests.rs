@@ -88,17 +88,3 @@ fn constant_and_missing_torque_are_refused() {
     let error = pair("b.csv", &c, &s, &AUTO, false, &mut Vec::new()).unwrap_err();
     assert!(error.reason.contains("no torque column"), "{error}");
 }
-
-#[test]
-fn the_rotor_in_the_wake_is_noticed() {
-    let mut c = columns("ESC A (us),ESC B (us),Thrust A (N),Thrust B (N),Torque A (Nm),Torque B (Nm)");
-    let mut s = samples(-1.0, 0.8);
-    s.iter_mut().for_each(|s| s.thrust.rotors[1] *= 4.0);
-    // A header that names the rotors may be wrong about them.
-    for named in [false, true] {
-        c.sides_named = named;
-        let mut notes = Vec::new();
-        pair("b.csv", &c, &s, &AUTO, false, &mut notes).expect("signs");
-        assert!(notes[0].contains("--swap"), "{notes:?}");
-    }
-}

@@ -101,7 +101,7 @@ pub(super) fn profile(rows: &[&Row], g: &Regressors, reference: f64) -> Option<E
 }
 
 /// The part of `y` outside the span of the columns; nothing if these are dependent or too many.
-pub(super) fn off_span(rows: &[Vec<f64>], y: &[f64]) -> Option<Vec<f64>> {
+pub(crate) fn off_span(rows: &[Vec<f64>], y: &[f64]) -> Option<Vec<f64>> {
     let columns = rows.first()?.len();
     if rows.len() <= columns {
         return None;

@@ -25,6 +25,9 @@ fn bench(kind: Kind, points: Vec<Point>) -> Bench {
         notes: Vec::new(),
         no_power: None,
         turning: None,
+        idle_options: Vec::new(),
+        record_drifts: false,
+        rests: Vec::new(),
         points,
     }
 }
@@ -44,6 +47,8 @@ fn sweep(volts: f64, sag: f64, k: f64, throttles: impl Iterator<Item = f64>, noi
             voltage,
             imbalance: 0.0,
             power_w: f64::NAN,
+            shaft_w: f64::NAN,
+            rpm: f64::NAN,
             cells: [f64::NAN; 4],
         }
     };
@@ -126,6 +131,8 @@ fn torque_that_changes_its_sign_has_an_exponent_too() {
                 voltage: volts,
                 imbalance: 0.0,
                 power_w: f64::NAN,
+                shaft_w: f64::NAN,
+                rpm: f64::NAN,
                 cells: [f64::NAN; 4],
             }
         };

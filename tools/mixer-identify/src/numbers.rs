@@ -1,0 +1,438 @@
+//! What a run must be, in numbers that need no unit: each with what right files have, and what a value outside means.
+//!
+//! `identify` and `predict` read the table for every file, `check` has its limits of what a map alone shows
+//! ([`TORQUE_SPAN_M`], [`GROWTH`]). A value with a standard error is outside where it is by four of them. Of one group
+//! the first number outside is told: it explains those behind it. `docs/warnings.md` has what the files at hand have.
+
+use std::f64::consts::PI;
+
+use mixer_compiler::airframe::TYPICAL_EXPONENT;
+use mixer_compiler::model::{GROWTH, TORQUE_PER_THRUST_M, TORQUE_SPAN_M};
+
+use crate::bench::{Bench, Kind, Point, equal_commands, is_one_signal};
+use crate::fit::Design;
+use crate::fit::robust::JUDGING;
+use crate::fit::voltage::off_span;
+use crate::refusal::Refusal;
+use crate::statistics::{dot, extent, greatest, median};
+
+/// One of them.
+#[derive(Clone, Copy)]
+pub struct Number {
+    /// What it is.
+    pub name: &'static str,
+    /// Where it lies in right files.
+    pub limits: [f64; 2],
+    /// Beyond these the file is refused.
+    refused: [f64; 2],
+    /// Cause and mend of a value outside.
+    outside: Outside,
+    /// The value and its standard error.
+    of: fn(&Run) -> Option<[f64; 2]>,
+}
+
+/// A number outside.
+#[derive(Debug, Clone)]
+pub struct Told {
+    /// The file.
+    pub file: String,
+    /// The number, and the cause of it.
+    pub text: String,
+    /// What mends it.
+    pub mend: String,
+    name: &'static str,
+    /// Of [`TABLE`].
+    group: usize,
+}
+
+impl Told {
+    /// All that is said.
+    pub(crate) fn sentence(&self) -> String {
+        format!("{}: {}; {}", self.file, self.text, self.mend)
+    }
+
+    /// The refusal of a map, with the rows that explain it.
+    pub(crate) fn explains(told: &[Told], refusal: Refusal) -> Refusal {
+        match told.iter().find(|told| told.group == 1) {
+            Some(rows) => Refusal::of(
+                &rows.file,
+                format!("{}; {}", rows.text, refusal.reason),
+                &rows.mend,
+            ),
+            None => refusal,
+        }
+    }
+
+    /// Whether it is of rows by their neighbours or of the shape, which a drift changes as well.
+    pub(crate) fn of_shape(&self) -> bool {
+        (1..=2).contains(&self.group)
+    }
+
+    /// Whether it is a constant in the torque.
+    pub(crate) fn is_torque_at_rest(&self) -> bool {
+        self.name == TORQUE_AT_LOWEST
+    }
+}
+
+/// Standard errors by which a value must be outside.
+const SURE: f64 = 4.0;
+const NEVER: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
+const TORQUE_AT_LOWEST: &str = "torque at the lowest equal throttles, beyond what the thrust there explains, over the \
+                                           greatest";
+const LOWEST: &str = "thrust at the lowest equal throttles over the greatest";
+const GROWS: &str = "power of the throttle with which thrust grows from middle to highest equal throttles";
+
+const ONE_ROTOR: Outside = [
+    "a unit is wrong, the diameter, or this is no run of ONE rotor",
+    "right units and diameter; where one signal drives both rotors of a pair, PRIOR",
+];
+const ZERO: Outside = [
+    "the load cells read something at rest",
+    "set the load cells to zero at rest, or record some rows at rest (throttle 0) before and after, which --tare takes off",
+];
+
+const fn number(
+    name: &'static str,
+    limits: [f64; 2],
+    refused: [f64; 2],
+    of: fn(&Run) -> Option<[f64; 2]>,
+    outside: Outside,
+) -> Number {
+    Number {
+        name,
+        limits,
+        refused,
+        outside,
+        of,
+    }
+}
+
+/// Sizes, rows by their neighbours, shape, voltage. Rows out of order bend the shape as well.
+pub const TABLE: [&[Number]; 4] = [&SIZES, &ROWS, &SHAPE, &VOLTAGE];
+
+type Outside = [&'static str; 2];
+
+#[rustfmt::skip]
+const SIZES: [Number; 7] = [
+    number("shaft power over electrical power", [0.4, 1.2], NEVER,
+        |run| exact(median(run.points.iter().map(|p| p.shaft_w / p.power_w))?), [
+            "the torque is a force at an arm, of another arm or in another unit, the current of one rotor, or the speed that of the motor's field",
+            "torque in N m (force times arm) in its column, or --unit torque=UNIT; current and speed of all rotors that turn"]),
+    number("torque per thrust in m", TORQUE_SPAN_M, TORQUE_PER_THRUST_M,
+        |run| {
+            let [low, high] = extent(run.of(|p| p.torque));
+            exact((high.max(0.0) - low.min(0.0)) / run.most(|p| p.thrust)).filter(|[x, _]| *x > 0.0)
+        }, [
+            "propellers of 4 to 40 inch have that: a unit is another one, or this is no run of ONE rotor",
+            "the units of both: --unit thrust=UNIT, --unit torque=UNIT"]),
+    number("torque per thrust in diameters", [0.02, 0.15], [0.02, 0.15],
+        |run| run.single(|p, d| p.torque / p.thrust / d), ONE_ROTOR),
+    number("disc loading in N/m2", [15.0, 2500.0], [15.0, 2500.0],
+        |run| run.single(|p, d| p.thrust / (0.25 * PI * d * d)), ONE_ROTOR),
+    // By momentum theory, in air of 1.2 kg/m3. A pair by the power of one rotor has 1.1.
+    number("ideal power over electrical power", [0.08, 0.95], [0.08, 0.95],
+        |run| run.single(|p, d| libm::pow(p.thrust, 1.5) / (0.6 * PI * d * d).sqrt() / p.power_w), ONE_ROTOR),
+    number("thrust over density, speed squared and diameter to the fourth", [0.02, 0.3], NEVER,
+        |run| run.single(|p, d| p.thrust / (1.2 * libm::pow(p.rpm / 60.0 * d * d, 2.0))), [
+            "the diameter is not the propeller's (its radius, another unit), or the speed not the rotor's",
+            "--diameter METRE from tip to tip; speed in revolutions per minute of the rotor, not of the motor's field"]),
+    number("thrust of the lower rotor over the upper one's at equal throttles, per torque where it is known", [0.45, 1.05], NEVER,
+        lower_over_upper, [
+            "one stand is in another unit, or the rotors are exchanged",
+            "--unit lower_thrust=UNIT or --unit upper_thrust=UNIT; --swap where the one taken as upper works in the wake"]),
+];
+
+#[rustfmt::skip]
+const ROWS: [Number; 2] = [
+    number("share of the row after in each row", UP_TO_2_PERCENT, NEVER,
+        |run| run.neighbour(true), [
+            "thrust and torque are means over several rows (a moving average)",
+            "the rows as they were measured, without smoothing"]),
+    number("share of the row before in each row", UP_TO_2_PERCENT, NEVER,
+        |run| run.neighbour(false), [
+            "a row holds what the one before it gave (a short dwell, a low pass, a mean that begins too early)",
+            "rows that begin after the step has settled: a longer dwell, or a mean over its end"]),
+];
+
+#[rustfmt::skip]
+const SHAPE: [Number; 6] = [
+    number(GROWS, [1.2, 2.2], NEVER,
+        |run| run.growth([0.5, 1.0], 0.0), [
+            "the throttle is a thrust that something linearised before the controller (MOT_THST_EXPO, THR_MDL_FAC)",
+            "the outputs that the speed controllers got as throttles, or that correction switched off"]),
+    number(GROWS, GROWTH, NEVER,
+        |run| run.growth([0.5, 1.0], 0.0), [
+            "the throttle is of another range of pulses, or linearised; an offset of the load cell would bend the lower end alone",
+            "the pulses that were sent, with --pwm-range LOW,HIGH of throttle 0 and 1, or shares of that range"]),
+    number(TORQUE_AT_LOWEST, [f64::NEG_INFINITY, 0.03], NEVER,
+        |run| {
+            let (_, at) = run.equal.first().filter(|_| run.lowest().is_some())?;
+            let [f, q] = [run.most(|p| p.thrust), run.most(|p| p.torque)];
+            exact((at.torque / q).abs() - 0.2 * at.thrust.max(0.0) / f)
+        }, ZERO),
+    number(LOWEST, [-0.001, f64::INFINITY], NEVER, |run| run.lowest(), ZERO),
+    number(LOWEST, [0.001, f64::INFINITY], NEVER,
+        |run| run.lowest(), [
+            "rotors may stand still there, or the load cells read something at rest",
+            "without the rows below IDLE, where both turn; else set the load cells to zero at rest"]),
+    number("power of the throttle with which thrust grows from lowest to highest equal throttles", [1.45, 2.15], NEVER,
+        |run| run.lowest().and_then(|_| run.growth([0.0, 1.0], TYPICAL_EXPONENT)), [
+            "the load cells read something at rest; or the throttle is of another range of pulses",
+            ZERO[1]]),
+];
+
+#[rustfmt::skip]
+const VOLTAGE: [Number; 4] = [
+    number("span of the voltage over the greatest, beside a power that varies", [1e-4, f64::INFINITY], NEVER,
+        |run| {
+            let ([low, high], [least, most]) = (extent(run.of(|p| p.voltage)), extent(run.of(|p| p.power_w)));
+            exact((high - low) / high).filter(|_| run.points.len() >= 5 && most > 2.0 * least)
+        }, [
+            "the voltage is that of the pack at rest, or was typed in",
+            "the voltage of each row under load (--column voltage=HEADER); without it no --voltage-exponent"]),
+    number("share of the sag that the throttles of the row before explain", [f64::NEG_INFINITY, 0.4], NEVER,
+        |run| {
+            let (own, volts) = (run.of(load), run.of(|p| p.voltage));
+            let before = run.pair()?.beside(&own, false);
+            let ones = vec![1.0; own.len()];
+            let [late, error] = slope(&[&ones, &own], &before, &volts)?;
+            let all = late + slope(&[&ones, &before], &own, &volts)?[0];
+            Some([late / all, (error / all).abs()])
+        }, [
+            "the voltage is that of the row before (another logger, a slow meter)",
+            "its column moved up by one row, or a meter read when the step has settled"]),
+    number("share of the sag that is of each voltage's own rotor more than of the other", [-0.2, f64::INFINITY], NEVER,
+        |run| {
+            let (sums, ones) = (run.pair()?.of(load), vec![1.0; run.points.len()]);
+            let own = run.of(|p| cube(p.u) - cube(p.l));
+            let apart = run.of(|p| 2.0 * p.imbalance * p.voltage);
+            let sum = run.of(|p| 2.0 * p.voltage);
+            let ([of_own, error], [all, _]) =
+                (slope(&[&ones, &sums], &own, &apart)?, slope(&[&ones], &sums, &sum)?);
+            Some([of_own / all, (error / all).abs()])
+        }, [
+            "the voltages of the rotors are exchanged",
+            "--column voltage=HEADER of the upper rotor and --column lower_voltage=HEADER of the lower one"]),
+    number("voltage of the lower meter less that of the upper one without load, over their mean", [-0.03, 0.03], NEVER,
+        |run| {
+            let (u, l) = (run.of(|p| cube(p.u)), run.of(|p| cube(p.l)));
+            slope(&[&u, &l], &vec![1.0; u.len()], &run.of(|p| -2.0 * p.imbalance))
+        }, [
+            "two meters of one supply differ, or each rotor has a supply of its own",
+            "of one supply the column of the right meter for both: --column voltage=HEADER --column lower_voltage=HEADER"]),
+];
+
+const UP_TO_2_PERCENT: [f64; 2] = [f64::NEG_INFINITY, 0.02];
+
+/// A file whose numbers are looked at.
+pub struct Run<'a> {
+    bench: &'a Bench,
+    points: &'a [Point],
+    diameter_m: Option<f64>,
+    /// Rows of a pair with equal throttles, in their order.
+    equal: Vec<(f64, &'a Point)>,
+}
+
+/// Throttles that differ by less are equal.
+const EQUAL: f64 = 0.01;
+
+impl<'a> Run<'a> {
+    /// The run of a bench; the diameter of its propeller, m, where it is known.
+    pub fn new(bench: &'a Bench, diameter_m: Option<f64>) -> Run<'a> {
+        let near = bench
+            .points
+            .iter()
+            .filter(|p| bench.kind == Kind::Pair && (p.u - p.l).abs() < EQUAL);
+        let mut equal: Vec<(f64, &Point)> = near.map(|p| (0.5 * (p.u + p.l), p)).collect();
+        equal.sort_by(|a, b| a.0.total_cmp(&b.0));
+        Run {
+            bench,
+            points: &bench.points,
+            diameter_m,
+            equal,
+        }
+    }
+
+    /// The numbers of the table with their values here.
+    pub fn values(&self) -> impl Iterator<Item = (usize, &'static Number, [f64; 2])> {
+        let all = TABLE
+            .into_iter()
+            .enumerate()
+            .flat_map(|(group, all)| all.iter().map(move |number| (group, number)));
+        all.filter_map(|(group, number)| {
+            Some((group, number, (number.of)(self).filter(|[x, _]| x.is_finite())?))
+        })
+    }
+
+    fn pair(&self) -> Option<&Self> {
+        (self.bench.kind == Kind::Pair).then_some(self)
+    }
+
+    fn of(&self, value: fn(&Point) -> f64) -> Vec<f64> {
+        self.points.iter().map(value).collect()
+    }
+
+    fn most(&self, value: fn(&Point) -> f64) -> f64 {
+        greatest(&self.of(value))
+    }
+
+    /// A number of one rotor and the diameter of its propeller, at its greatest throttle.
+    fn single(&self, value: fn(&Point, f64) -> f64) -> Option<[f64; 2]> {
+        let fastest = self.points.iter().max_by(|a, b| a.u.total_cmp(&b.u));
+        let fastest = fastest.filter(|_| self.bench.kind == Kind::SingleRotor);
+        exact(value(fastest?, self.diameter_m?))
+    }
+
+    /// Values of the rows after or before each; its own where there is none, 0 where there are rows at rest.
+    fn beside(&self, values: &[f64], after: bool) -> Vec<f64> {
+        let line = |k: usize| self.points[k].line;
+        let at = |k: usize| {
+            let other = if after { k + 1 } else { k.wrapping_sub(1) };
+            let Some(value) = values.get(other) else {
+                return values[k];
+            };
+            let between = line(k.min(other))..line(k.max(other));
+            let rests = self.bench.rests.iter().any(|rest| between.contains(rest));
+            if rests { 0.0 } else { *value }
+        };
+        (0..values.len()).map(at).collect()
+    }
+
+    /// What each row has of the fitted row after or before it, of thrust or torque, whichever shows it better.
+    fn neighbour(&self, after: bool) -> Option<[f64; 2]> {
+        let places: Vec<[f64; 2]> = self.pair()?.points.iter().map(|p| [p.u, p.l]).collect();
+        let design = Design::within_its_points(JUDGING, &places).ok()?;
+        let share = |value| {
+            let y = self.of(value);
+            let missed = design.residuals(&y, &design.coordinates(&y));
+            let fitted: Vec<f64> = y.iter().zip(&missed).map(|(y, e)| y - e).collect();
+            let [own, other] = [after, !after].map(|after| self.beside(&fitted, after));
+            let rows = design.q.iter().zip(&other);
+            let rows: Vec<Vec<f64>> = rows.map(|(q, other)| [q, &[*other][..]].concat()).collect();
+            along(&rows, &own, &y)
+        };
+        let shares = [share(|p| p.thrust), share(|p| p.torque)].into_iter().flatten();
+        shares.max_by(|[a, e], [b, f]| (a / e).total_cmp(&(b / f)))
+    }
+
+    /// The power of the throttle with which thrust grows between the equal throttles next to these shares of their range,
+    /// brought to one voltage by this exponent.
+    fn growth(&self, shares: [f64; 2], exponent: f64) -> Option<[f64; 2]> {
+        let (low, high) = (self.equal.first()?.0, self.equal.last()?.0);
+        let distance = |share: f64| move |(t, _): &&(f64, &Point)| (t - low - share * (high - low)).abs();
+        let near = |share: f64| {
+            let near = distance(share);
+            self.equal.iter().min_by(|a, b| near(a).total_cmp(&near(b)))
+        };
+        let [(from, a), (to, b)] = [near(shares[0])?, near(shares[1])?];
+        let sag = Some(a.voltage / b.voltage)
+            .filter(|sag| sag.is_finite())
+            .unwrap_or(1.0);
+        let thrust = libm::pow(sag, exponent) * b.thrust / a.thrust;
+        exact(libm::log(thrust) / libm::log(to / from)).filter(|_| *to > 1.2 * from)
+    }
+
+    /// The lowest equal throttle that gives thrust.
+    fn turning(&self) -> String {
+        let least = 0.001 * self.most(|p| p.thrust);
+        let first = self.equal.iter().find(|(_, p)| p.thrust > least);
+        first.map_or("them".into(), |(throttle, _)| format!("{throttle:.2}"))
+    }
+
+    /// The share of the greatest thrust at the lowest equal throttles of a map over the whole range.
+    fn lowest(&self) -> Option<[f64; 2]> {
+        let [(low, at), (high, _)] = [self.equal.first()?, self.equal.last()?];
+        exact(at.thrust / self.most(|p| p.thrust)).filter(|_| *low <= 0.15 && *high >= 0.5)
+    }
+}
+
+fn exact(value: f64) -> Option<[f64; 2]> {
+    Some([value, 0.0])
+}
+
+fn cube(x: f64) -> f64 {
+    x * x * x
+}
+
+/// What the current of both rotors follows.
+fn load(p: &Point) -> f64 {
+    cube(p.u) + cube(p.l)
+}
+
+fn lower_over_upper(run: &Run) -> Option<[f64; 2]> {
+    let ratio = |cell: usize| {
+        let equal = run.points.iter().filter(|p| is_one_signal([p.u, p.l]));
+        let [upper, lower] = equal.fold([0.0; 2], |[a, b], p| [a + p.cells[cell], b + p.cells[cell + 1]]);
+        Some((lower / upper).abs()).filter(|ratio| ratio.is_finite())
+    };
+    exact(ratio(0)? / ratio(2).unwrap_or(1.0))
+}
+
+/// The coefficient of x beside these columns in y, and its standard error.
+fn slope(columns: &[&Vec<f64>], x: &[f64], y: &[f64]) -> Option<[f64; 2]> {
+    let rows: Vec<Vec<f64>> = (0..x.len())
+        .map(|k| columns.iter().map(|column| column[k]).collect())
+        .collect();
+    along(&rows, x, y)
+}
+
+fn along(rows: &[Vec<f64>], x: &[f64], y: &[f64]) -> Option<[f64; 2]> {
+    let (own, rest) = (off_span(rows, x)?, off_span(rows, y)?);
+    let freedom = rows
+        .len()
+        .checked_sub(rows.first()?.len() + 1)
+        .filter(|&n| n > 0)?;
+    let size = dot(&own, &own);
+    let slope = dot(&own, &rest) / size;
+    let left = (dot(&rest, &rest) - slope * slope * size).max(0.0);
+    Some([slope, (left / freedom as f64 / size).sqrt()]).filter(|value| value.iter().all(|x| x.is_finite()))
+}
+
+/// What is outside of the numbers of a file.
+///
+/// # Errors
+/// A number that no pair, or no rotor, has.
+pub(crate) fn told(bench: &Bench, diameter_m: Option<f64>) -> Result<Vec<Told>, Refusal> {
+    let mut found: Vec<Told> = Vec::new();
+    let run = Run::new(bench, diameter_m);
+    for (group, number, [x, error]) in run.values() {
+        let is_outside = |[low, high]: [f64; 2]| x + SURE * error < low || x - SURE * error > high;
+        let is_explained = |told: &Told| told.group == group || (told.group, group) == (1, 2);
+        if bench.record_drifts && (1..=2).contains(&group) {
+            continue;
+        }
+        if !is_outside(number.limits) || !is_outside(number.refused) && found.iter().any(is_explained) {
+            continue;
+        }
+        let [low, high] = number.limits;
+        let within = match (low.is_finite(), high.is_finite()) {
+            (true, true) => format!("{low} to {high}"),
+            (true, false) => format!("{low} and more"),
+            _ => format!("{high} at most"),
+        };
+        let [cause, mend] = number.outside;
+        let mend = mend
+            .replace("PRIOR", &equal_commands(&[&bench.file]))
+            .replace("IDLE", &run.turning());
+        let text = format!(
+            "the {} is {}, of right files {within}: {cause}",
+            number.name,
+            two_digits(x)
+        );
+        if is_outside(number.refused) {
+            return Err(Refusal::of(&bench.file, text, mend));
+        }
+        found.push(Told {
+            file: bench.file.clone(),
+            text,
+            mend,
+            name: number.name,
+            group,
+        });
+    }
+    Ok(found)
+}
+
+fn two_digits(x: f64) -> f64 {
+    format!("{x:.1e}").parse().unwrap_or(x)
+}
