@@ -15,5 +15,22 @@ fn main() -> Result<(), Box<dyn Error>> {
     for (name, text) in pictures::pictures(&compiled) {
         fs::write(root.join("docs").join(name), text)?;
     }
+    let flown = fs::read_to_string(root.join("tests/measurements/flights/yaw-step.csv"))?;
+    let mut rows = flown
+        .lines()
+        .filter(|line| !line.starts_with('#'))
+        .map(|line| line.split(',').collect::<Vec<_>>());
+    let header = rows.next().ok_or("no flights")?;
+    let mut mixers: Vec<(String, Vec<[f64; 2]>)> = header[1..]
+        .iter()
+        .map(|name| (name.trim().to_owned(), Vec::new()))
+        .collect();
+    for row in rows {
+        let time_s = row[0].parse()?;
+        for ((_, points), cell) in mixers.iter_mut().zip(&row[1..]) {
+            points.push([time_s, cell.parse()?]);
+        }
+    }
+    fs::write(root.join("docs/yaw-step.svg"), pictures::yaw_step(&mixers))?;
     Ok(())
 }

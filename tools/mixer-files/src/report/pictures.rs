@@ -8,6 +8,7 @@ use crate::report::comparison::Comparison;
 use crate::report::data::YAW_COMMANDS;
 use crate::report::effort::Effort;
 use crate::report::figure::Figure;
+use crate::report::number::{range, widened};
 use crate::report::page::FIGURE_STYLE;
 use crate::report::study::Study;
 use crate::report::{maps, plots};
@@ -32,6 +33,23 @@ pub fn pictures(compiled: &Compiled) -> BTreeMap<String, String> {
     let name = &compiled.airframe.name;
     let file = |(picture, figure): (&str, Figure)| (format!("{name}-{picture}.svg"), styled(&figure.svg()));
     figures.into_iter().map(file).collect()
+}
+
+/// Thrust over weight against time, s, in a flight's step of yaw: a curve for each mixer, with its name.
+pub fn yaw_step(mixers: &[(String, Vec<[f64; 2]>)]) -> String {
+    let points = || mixers.iter().flat_map(|(_, points)| points);
+    let axis = |k: usize| range(points().map(|point| point[k]).chain((k == 1).then_some(1.0)));
+    let mut figure = Figure::new(
+        "Thrust of an X8 in a step of 175 degrees of yaw in PX4's simulator, with PX4's allocator and with this mixer",
+        ("time from the step (s)", axis(0)),
+        ("thrust over weight", widened(axis(1), 0.06)),
+    )
+    .high(200.0);
+    figure.level("axis-line", "", 1.0);
+    for ((name, points), class) in mixers.iter().zip(["series-1", "series-2", "series-3"]) {
+        figure.curve(class, name, points);
+    }
+    styled(&figure.svg())
 }
 
 /// A picture with the style that the page would give it, and a ground of its own: documents may be
