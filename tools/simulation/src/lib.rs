@@ -23,7 +23,6 @@
 pub mod air;
 pub mod battery;
 pub mod controller;
-pub mod conventional;
 pub mod figures;
 pub mod flight;
 pub mod integrator;

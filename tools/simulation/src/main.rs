@@ -2,7 +2,7 @@
 
 use std::error::Error;
 use std::fs::{self, File};
-use std::io::{IsTerminal, Write};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -11,7 +11,7 @@ use simulation::figures;
 use simulation::flight::Scenario;
 use simulation::log;
 use simulation::mixer::Method;
-use simulation::table::{Comparison, NOTES};
+use simulation::table::Comparison;
 use simulation::vehicle;
 
 /// Flies the ISAE X8 through the paper's manoeuvre with the coaxial and with the conventional
@@ -50,9 +50,6 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let mut out = std::io::stdout().lock();
     let mut comparisons = Vec::new();
     for scenario in Scenario::ALL {
-        if std::io::stderr().is_terminal() {
-            eprintln!("flying {} seeds in {scenario} ..", arguments.seeds);
-        }
         let flights = (1..=arguments.seeds)
             .map(|seed| scenario.fly(&airframe, seed))
             .collect::<Result<_, _>>()?;
@@ -60,7 +57,7 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         writeln!(out, "{comparison}")?;
         comparisons.push(comparison);
     }
-    write!(out, "{NOTES}")?;
+    writeln!(out, "docs/flights.md says what this shows, and what it does not.")?;
     for Comparison { scenario, flights } in &comparisons {
         let Some(first) = flights.first() else { continue };
         if let Some(folder) = &arguments.plots {

@@ -1,13 +1,15 @@
-//! The two mixers behind one face.
+//! The two mixers behind one face. The conventional one is that of the paper's section V, every rotor taken as isolated:
+//! `isolated_rotors` on the airframe's tables, in f32 as in a flight controller.
 
 use std::fmt;
 
+use isolated_rotors::IsolatedTables;
 use mixer_compiler::airframe::Airframe;
 use mixer_compiler::model::effectiveness::Effectiveness;
+use mixer_compiler::model::law::CorrectionTables;
 use mixer_rt::{SetpointError, Wrench};
 use nalgebra::{SVector, Vector4};
 
-use crate::conventional::ConventionalMixer;
 use crate::vehicle::{ROTORS, isae_x8};
 
 /// Throttle per channel, and whether anything was saturated.
@@ -37,24 +39,26 @@ pub enum Mixer {
     /// The airframe's mixer from the macro.
     Coaxial,
     /// The conventional mixer.
-    Conventional(Box<ConventionalMixer>),
+    Conventional(Box<IsolatedTables>),
 }
 
 impl Mixer {
     /// The mixer of `airframe` by name.
     ///
     /// # Errors
-    /// A conventional mixer that does not exist: see [`ConventionalMixer::new`]; rotors that cannot
-    /// produce all four axes.
+    /// For the conventional one an airframe of other than eight rotors, or rotors that cannot produce all four axes.
     pub fn new(method: Method, airframe: &Airframe) -> Result<Self, &'static str> {
-        Ok(match method {
-            Method::Coaxial => Mixer::Coaxial,
-            Method::Conventional => {
-                let effectiveness =
-                    Effectiveness::new(airframe).map_err(|_| "the rotors cannot produce all four axes")?;
-                Mixer::Conventional(Box::new(ConventionalMixer::new(airframe, &effectiveness)?))
-            }
-        })
+        if method == Method::Coaxial {
+            return Ok(Mixer::Coaxial);
+        }
+        if airframe.rotors() != ROTORS {
+            return Err("the airframe has not eight rotors");
+        }
+        let effectiveness =
+            Effectiveness::new(airframe).map_err(|_| "the rotors cannot produce all four axes")?;
+        let voltage = CorrectionTables::new(airframe).voltage;
+        let tables = IsolatedTables::of(airframe, &effectiveness, voltage);
+        Ok(Mixer::Conventional(Box::new(tables)))
     }
 
     /// Throttle per channel for `[roll, pitch, yaw (N m), thrust (N)]`, and whether anything was
@@ -63,14 +67,20 @@ impl Mixer {
     /// # Errors
     /// A wrench or voltage that is not finite.
     pub fn mix(&self, wrench: &Vector4<f64>, voltage_v: f64) -> Result<Mixed, SetpointError> {
-        match self {
+        let (setpoint, volts) = (
+            Wrench::from_array(wrench.map(|x| x as f32).into()),
+            voltage_v as f32,
+        );
+        let (throttle, is_saturated) = match self {
             Mixer::Coaxial => {
-                let setpoint = Wrench::from_array(wrench.map(|x| x as f32).into());
-                let mix = isae_x8::mix(&setpoint, voltage_v as f32)?;
-                let throttle = SVector::from(mix.throttle).map(f64::from);
-                Ok((throttle, mix.saturation.any_axis()))
+                let mix = isae_x8::mix(&setpoint, volts)?;
+                (mix.throttle, mix.saturation.any_axis())
             }
-            Mixer::Conventional(mixer) => mixer.mix(wrench, voltage_v),
-        }
+            Mixer::Conventional(tables) => {
+                let (throttle, is_within) = tables.conventional(&setpoint, volts)?;
+                (std::array::from_fn(|channel| throttle[channel]), !is_within)
+            }
+        };
+        Ok((SVector::from(throttle).map(f64::from), is_saturated))
     }
 }

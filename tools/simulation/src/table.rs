@@ -16,19 +16,6 @@ pub struct Comparison {
     pub flights: Vec<FlightPair>,
 }
 
-/// What stands under the tables.
-pub const NOTES: &str = "\
-What this shows: both mixers on one plant, the identified coaxial map, rotors as flywheels, 1 % rotor mismatch and a
-sagging battery, under the same controller with the same gains, placed on a mixer that delivers what is asked.
-What it does not: the plant is the map that the coaxial mixer inverts, so that mixer's model error is left out (the
-paper's flight shows some 2 N of it); ground effect, drag, sensor noise and the paper's own gains, yaw angles and
-times are not known; unsteady air has an assumed size. Compare ratios, not metres.
-Still air leaves the mixers' own coupling alone: a fifth of a millimetre in x and y. In unsteady air with a decoupled
-tilt (PX4's default) the mixers differ in z alone; with a coupled tilt the thrust that the conventional mixer misses
-also weakens the tilt, and x and y differ as z does. The paper does not say which its controller had. A controller
-that knows its hover thrust, estimated or measured, takes away nearly all of the difference in z.
-";
-
 impl fmt::Display for Comparison {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let flights = &self.flights;

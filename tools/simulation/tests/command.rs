@@ -48,7 +48,7 @@ fn prints_the_tables_and_writes_figures_and_data() {
     ] {
         assert!(text.contains(&format!("{ratio}\n")), "{ratio} in\n{text}");
     }
-    assert!(text.contains("What it does not"), "{text}");
+    assert!(text.contains("docs/flights.md says what"), "{text}");
 
     for scenario in SCENARIOS {
         for figure in ["fig8-position", "fig9-yaw", "fig10-thrust"] {

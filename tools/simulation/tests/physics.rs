@@ -7,7 +7,6 @@ use mixer_compiler::model::PairMap;
 use mixer_compiler::model::effectiveness::Effectiveness;
 use nalgebra::{DVector, Matrix3, SVector, Vector3, Vector4};
 use simulation::battery::{self, Battery};
-use simulation::conventional::ConventionalMixer;
 use simulation::mixer::{Method, Mixer};
 use simulation::plant::{Disturbance, Plant};
 use simulation::state::State;
@@ -238,7 +237,7 @@ const ORACLE: [([f64; 4], f64, [f64; 4]); 6] = [
 fn the_conventional_mixer_agrees_with_the_oracle() {
     let airframe = vehicle::airframe().unwrap();
     let effectiveness = Effectiveness::new(&airframe).unwrap();
-    let mixer = ConventionalMixer::new(&airframe, &effectiveness).unwrap();
+    let mixer = Mixer::new(Method::Conventional, &airframe).unwrap();
     let map = PairMap::new(&airframe.pair, &airframe.throttle);
     let voltage = airframe.voltage.as_ref().unwrap();
     for (asked, volts, given) in ORACLE {
@@ -261,9 +260,7 @@ fn the_conventional_mixer_agrees_with_the_oracle() {
 #[test]
 fn the_conventional_mixer_limits_and_says_so() {
     let airframe = vehicle::airframe().unwrap();
-    let Mixer::Conventional(mixer) = Mixer::new(Method::Conventional, &airframe).unwrap() else {
-        unreachable!("asked for the conventional mixer")
-    };
+    let mixer = Mixer::new(Method::Conventional, &airframe).unwrap();
     for thrust in [-10.0, 0.0, 500.0] {
         let (throttle, limited) = mixer.mix(&Vector4::new(0.0, 0.0, 0.0, thrust), 14.8).unwrap();
         assert!(

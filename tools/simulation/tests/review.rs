@@ -122,16 +122,16 @@ fn fly_with(
         };
         let volts = world.voltage_v();
         let (throttles, ..) = compiled.tables.mix(&setpoint, volts as f32).unwrap();
-        let measured = sensors.inertial(&world);
+        let [acceleration, _] = sensors.inertial(&world);
         let axes = |x: Vector3<f64>| x.iter().copied().collect::<Vec<f64>>();
-        force.push(time_s, axes(measured.acceleration + Vector3::z() * OFFSET_M_S2));
+        force.push(time_s, axes(acceleration + Vector3::z() * OFFSET_M_S2));
         if step.is_multiple_of(OUTPUTS) {
             throttle.push(
                 time_s,
                 throttles.iter().map(|throttle| f64::from(*throttle)).collect(),
             );
             voltage.push(time_s, vec![volts]);
-            velocity.push(time_s, axes(sensors.fix(&world).velocity));
+            velocity.push(time_s, axes(sensors.fix(&world).1));
             down.push(time_s, axes(world.state.rotation().inverse() * Vector3::z()));
             landed.push(time_s, vec![f64::from(u8::from(world.on_ground))]);
         }

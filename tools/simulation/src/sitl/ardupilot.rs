@@ -5,13 +5,13 @@
 //! no time passes. A number that goes back is an ArduPilot that has started anew.
 
 use std::io::ErrorKind;
-use std::net::{Ipv4Addr, UdpSocket};
+use std::net::UdpSocket;
 use std::time::{Duration, Instant};
 
 use nalgebra::Vector3;
 
 use super::flight::{End, Flight};
-use super::link::is_silence;
+use super::link::{self, is_silence};
 use super::sensors::Sensors;
 use super::vehicle::{MOST_ROTORS, Throttles};
 use super::world::World;
@@ -40,13 +40,8 @@ pub const PORT: u16 = 9002;
 /// # Errors
 /// A port that is taken.
 pub fn listen(port: u16) -> Result<UdpSocket, String> {
-    let socket = UdpSocket::bind((Ipv4Addr::LOCALHOST, port)).and_then(|socket| {
-        socket.set_read_timeout(Some(WAIT))?;
-        Ok(socket)
-    });
-    socket.map_err(|error| {
-        format!("UDP port {port} for ArduPilot: {error}; end what uses it, or give --port another one and start ArduPilot with --sim-port-out")
-    })
+    let mend = ", or give --port another one and start ArduPilot with --sim-port-out";
+    link::listen(port, Some(WAIT), "ArduPilot", mend)
 }
 
 /// A packet of ArduPilot: steps per second, its number, a throttle per channel.
@@ -161,7 +156,7 @@ fn packet(bytes: &[u8], [low, high]: [f64; 2]) -> Option<Packet> {
 /// the first line: ArduPilot looks for a line between two of them.
 fn answer(world: &World, sensors: &mut Sensors) -> String {
     let state = &world.state;
-    let inertial = sensors.inertial(world);
+    let [acceleration, rate] = sensors.inertial(world);
     let q = state.attitude;
     let list = |vector: &Vector3<f64>| format!("[{:.9},{:.9},{:.9}]", vector.x, vector.y, vector.z);
     format!(
@@ -169,8 +164,8 @@ fn answer(world: &World, sensors: &mut Sensors) -> String {
          \"quaternion\":[{:.9},{:.9},{:.9},{:.9}],\"velocity\":{},\"battery\":{{\"voltage\":{:.4},\"current\":{:.4}}},\
          \"no_time_sync\":1}}\n",
         world.time_s(),
-        list(&inertial.rate),
-        list(&inertial.acceleration),
+        list(&rate),
+        list(&acceleration),
         list(&state.position),
         q.w,
         q.i,

@@ -6,6 +6,7 @@ use std::net::{Ipv4Addr, TcpStream, UdpSocket};
 use std::time::{Duration, Instant};
 
 use super::flight::{End, Flight};
+use super::link;
 use super::pilot::Channels;
 use super::sensors::Sensors;
 use super::vehicle::{MOST_ROTORS, Throttles};
@@ -75,11 +76,7 @@ const REASONS: [&str; 29] = [
 /// # Errors
 /// A port that is taken.
 pub fn listen(port: u16) -> Result<UdpSocket, String> {
-    let socket = UdpSocket::bind((Ipv4Addr::LOCALHOST, port)).and_then(|socket| {
-        socket.set_nonblocking(true)?;
-        Ok(socket)
-    });
-    socket.map_err(|error| format!("UDP port {port} for Betaflight: {error}; end what uses it"))
+    link::listen(port, None, "Betaflight", "")
 }
 
 /// Serves Betaflight until the flight ends.
@@ -169,15 +166,14 @@ const NO_TIME: f64 = 0.0;
 /// `fdm_packet`: time, angular rate with yaw negated, specific force, attitude, velocity, longitude, latitude and altitude, all of
 /// the body's and the world's axes forward or north, right or east, down, and the pressure, Pa.
 fn state(world: &World, sensors: &mut Sensors) -> Vec<u8> {
-    let inertial = sensors.inertial(world);
-    let (rate, force, q) = (inertial.rate, inertial.acceleration, world.state.attitude);
+    let ([force, rate], q) = (sensors.inertial(world), world.state.attitude);
     let altitude_m = world.vehicle.altitude_m - world.state.position.z;
     let values = [
         &[NO_TIME, rate.x, rate.y, -rate.z][..],
         force.as_slice(),
         &[q.w, q.i, q.j, q.k],
         world.state.velocity.as_slice(),
-        &[0.0, 0.0, altitude_m, 100.0 * sensors.air(world).pressure_hpa],
+        &[0.0, 0.0, altitude_m, 100.0 * sensors.air(world)[0]],
     ];
     values
         .concat()

@@ -32,6 +32,9 @@ impl Frames {
     /// Passes over bytes; those that follow each other count once.
     fn skip(&mut self, count: usize) {
         self.bytes.drain(..count);
+        if self.malformed == 0 {
+            eprintln!("what has come is no MAVLink: passed over");
+        }
         self.malformed += u64::from(!self.skipping);
         self.skipping = true;
     }

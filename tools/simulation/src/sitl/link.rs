@@ -23,6 +23,19 @@ pub fn is_silence(error: &std::io::Error) -> bool {
     )
 }
 
+/// A UDP port of this machine for `whom`, which is read without waiting, or waits for so long.
+///
+/// # Errors
+/// A port that is taken; `mend` says what else would do.
+pub fn listen(port: u16, wait: Option<Duration>, whom: &str, mend: &str) -> Result<UdpSocket, String> {
+    let socket = UdpSocket::bind((Ipv4Addr::LOCALHOST, port)).and_then(|socket| {
+        socket.set_read_timeout(wait)?;
+        socket.set_nonblocking(wait.is_none())?;
+        Ok(socket)
+    });
+    socket.map_err(|error| format!("UDP port {port} for {whom}: {error}; end what uses it{mend}"))
+}
+
 /// A link, connected or not yet.
 #[derive(Debug)]
 pub struct Link {
@@ -45,15 +58,7 @@ impl Link {
     /// # Errors
     /// A port that is taken.
     pub fn udp(port: u16) -> Result<Link, String> {
-        let socket = UdpSocket::bind((Ipv4Addr::LOCALHOST, port)).and_then(|socket| {
-            socket.set_nonblocking(true)?;
-            Ok(socket)
-        });
-        let socket = socket.map_err(|error| {
-            format!(
-                "UDP port {port} for PX4's MAVLink: {error}; end what uses it, or give --link another port"
-            )
-        })?;
+        let socket = listen(port, None, "PX4's MAVLink", ", or give --link another port")?;
         Ok(Link::new(Way::Udp(socket, None)))
     }
 

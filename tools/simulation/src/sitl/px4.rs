@@ -67,8 +67,6 @@ struct Px4 {
     answers: bool,
     armed: bool,
     unanswered: u64,
-    /// Whether malformed bytes have been told of.
-    has_complained: bool,
 }
 
 /// Serves PX4 until the flight ends.
@@ -90,7 +88,6 @@ pub fn serve(listener: &TcpListener, flight: &mut Flight, sensors: &mut Sensors)
         answers: false,
         armed: false,
         unanswered: 0,
-        has_complained: false,
     };
     let end = px4.fly(flight, sensors);
     let record = &mut flight.record;
@@ -148,10 +145,6 @@ impl Px4 {
                     }
                 }
             }
-            if self.frames.malformed > 0 && !self.has_complained {
-                self.has_complained = true;
-                eprintln!("PX4 sends what is no MAVLink: passed over");
-            }
             let left = deadline.saturating_duration_since(Instant::now());
             if left.is_zero() {
                 if self.armed {
@@ -197,13 +190,11 @@ fn floats(vector: &Vector3<f64>) -> [f32; 3] {
 }
 
 fn measured(world: &World, sensors: &mut Sensors, slow: bool) -> MavMessage {
-    let inertial = sensors.inertial(world);
-    let [xacc, yacc, zacc] = floats(&inertial.acceleration);
-    let [xgyro, ygyro, zgyro] = floats(&inertial.rate);
+    let [[xacc, yacc, zacc], [xgyro, ygyro, zgyro]] = sensors.inertial(world).map(|vector| floats(&vector));
     let slow = if slow { SLOW_FIELDS } else { 0 };
     let fields_updated = HilSensorUpdatedFlags::from_bits_truncate(INERTIAL_FIELDS | slow);
     let [xmag, ymag, zmag] = floats(&sensors.field(world));
-    let air = sensors.air(world);
+    let [abs_pressure, pressure_alt, temperature] = sensors.air(world).map(|value| value as f32);
     MavMessage::HIL_SENSOR(HIL_SENSOR_DATA {
         time_usec: world.time_us,
         xacc,
@@ -215,9 +206,9 @@ fn measured(world: &World, sensors: &mut Sensors, slow: bool) -> MavMessage {
         xmag,
         ymag,
         zmag,
-        abs_pressure: air.pressure_hpa as f32,
-        pressure_alt: air.altitude_m as f32,
-        temperature: air.temperature_c as f32,
+        abs_pressure,
+        pressure_alt,
+        temperature,
         fields_updated,
         ..HIL_SENSOR_DATA::DEFAULT
     })
@@ -233,10 +224,10 @@ fn centimetres(velocity: &Vector3<f64>) -> [i16; 3] {
 }
 
 fn fix(world: &World, sensors: &mut Sensors) -> MavMessage {
-    let fix = sensors.fix(world);
-    let [lat, lon, alt] = scaled(fix.place);
-    let [vn, ve, vd] = centimetres(&fix.velocity);
-    let course = libm::atan2(fix.velocity.y, fix.velocity.x).to_degrees();
+    let (place, velocity) = sensors.fix(world);
+    let [lat, lon, alt] = scaled(place);
+    let [vn, ve, vd] = centimetres(&velocity);
+    let course = libm::atan2(velocity.y, velocity.x).to_degrees();
     MavMessage::HIL_GPS(HIL_GPS_DATA {
         time_usec: world.time_us,
         lat,
@@ -244,7 +235,7 @@ fn fix(world: &World, sensors: &mut Sensors) -> MavMessage {
         alt,
         eph: 30,
         epv: 40,
-        vel: (100.0 * fix.velocity.norm()) as u16,
+        vel: (100.0 * velocity.norm()) as u16,
         vn,
         ve,
         vd,

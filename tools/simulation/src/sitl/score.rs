@@ -35,41 +35,19 @@ pub const COLUMNS: [(&str, usize); 7] = [
     ("roll or pitch, most, deg", 2),
 ];
 
-/// The hover before the first step.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Hover {
-    /// Mean thrust setpoint of the stack.
-    pub thrust_setpoint: f64,
-    /// Mean throttle of all rotors.
-    pub throttle: f64,
-    /// Standard deviation of the height, m.
-    pub height_m: f64,
-    /// Mean voltage, V.
-    pub voltage_v: f64,
-}
-
-/// After a rotor has stopped, until the next step.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct AfterFailure {
-    /// Largest change of roll or pitch, degrees.
-    pub tilt_deg: f64,
-    /// Largest change of heading, degrees.
-    pub yaw_deg: f64,
-    /// Largest change of height, m.
-    pub height_m: f64,
-}
-
 /// The table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Score {
     /// Throttle in hover by the map that was flown.
     pub model_throttle: f64,
-    /// `None` where the flight did not come to it.
-    pub hover: Option<Hover>,
+    /// The hover before the first step: means of the stack's thrust setpoint, of all rotors' throttles and of the voltage, V;
+    /// standard deviation of the height, m. `None` where the flight did not come to it.
+    pub hover: Option<[f64; 4]>,
     /// One row per kind of step.
     pub rows: Vec<Row>,
+    /// After a rotor has stopped, until the next step: largest change of roll or pitch and of heading, degrees, and of height, m.
     /// `None` where no rotor stopped, or the flight ended at once.
-    pub failure: Option<AfterFailure>,
+    pub failure: Option<[f64; 3]>,
     /// Thrust over the first seconds of all steps in heading, against that of the second before: mean, rms, most and least, %.
     pub thrust_percent: Option<[f64; 4]>,
 }
@@ -156,16 +134,14 @@ impl Flown<'_> {
         mean(self.between(begin_s, end_s).map(|(_, sample)| of(sample)))
     }
 
-    fn hover(&self, begin_s: f64, end_s: f64) -> Option<Hover> {
+    fn hover(&self, begin_s: f64, end_s: f64) -> Option<[f64; 4]> {
         let over = |of: &dyn Fn(&Sample) -> f64| self.mean(begin_s, end_s, of);
         let height_m = over(&height)?;
         let square = |sample: &Sample| (height(sample) - height_m) * (height(sample) - height_m);
-        Some(Hover {
-            thrust_setpoint: over(&|sample| sample.thrust_setpoint)?,
-            throttle: over(&|sample| sample.throttles.iter().sum::<f64>() / sample.throttles.len() as f64)?,
-            height_m: over(&square)?.sqrt(),
-            voltage_v: over(&|sample| sample.voltage_v)?,
-        })
+        let throttle = |sample: &Sample| mean(sample.throttles.iter().copied()).unwrap_or_default();
+        let setpoint = over(&|sample| sample.thrust_setpoint)?;
+        let volts = over(&|sample| sample.voltage_v)?;
+        Some([setpoint, over(&throttle)?, volts, over(&square)?.sqrt()])
     }
 
     fn step(&self, [begin_s, end_s]: [f64; 2], from: &Target, to: &Target, weight_n: f64) -> Option<Step> {
@@ -246,7 +222,7 @@ impl Flown<'_> {
         ])
     }
 
-    fn after_failure(&self, failed_s: f64, plan: &Plan) -> Option<AfterFailure> {
+    fn after_failure(&self, failed_s: f64, plan: &Plan) -> Option<[f64; 3]> {
         let mut begins = plan.steps.iter().map(|(begin_s, _)| *begin_s);
         let next = begins.find(|begin_s| *begin_s > failed_s + 0.1);
         let end_s = next.unwrap_or(plan.end_s);
@@ -258,11 +234,11 @@ impl Flown<'_> {
         let yaw = first + over(&|sample| wrapped(sample.euler.z - first))?;
         let window = || self.between(failed_s, end_s).map(|(_, sample)| sample);
         window().next()?;
-        Some(AfterFailure {
-            tilt_deg: most(window().map(|sample| tilt_deg(sample, was))),
-            yaw_deg: most(window().map(|sample| wrapped(sample.euler.z - yaw).to_degrees().abs())),
-            height_m: most(window().map(|sample| (height(sample) - height_m).abs())),
-        })
+        Some([
+            most(window().map(|sample| tilt_deg(sample, was))),
+            most(window().map(|sample| wrapped(sample.euler.z - yaw).to_degrees().abs())),
+            most(window().map(|sample| (height(sample) - height_m).abs())),
+        ])
     }
 }
 
@@ -288,19 +264,18 @@ fn most(values: impl Iterator<Item = f64>) -> f64 {
 
 impl fmt::Display for Score {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if let Some(hover) = &self.hover {
+        if let Some([setpoint, throttle, volts, height_m]) = self.hover {
             writeln!(
                 f,
-                "hover: thrust setpoint {:.4} (the stack's, in its units), throttle {:.4} (mean of the rotors' commands; \
-                 {:.4} by the plant, all alike), height {:.3} m rms, {:.2} V",
-                hover.thrust_setpoint, hover.throttle, self.model_throttle, hover.height_m, hover.voltage_v
+                "hover: thrust setpoint {setpoint:.4} (the stack's, in its units), throttle {throttle:.4} (mean of the rotors' commands; \
+                 {:.4} by the plant, all alike), height {height_m:.3} m rms, {volts:.2} V",
+                self.model_throttle
             )?;
         }
-        if let Some(failure) = &self.failure {
+        if let Some([tilt_deg, yaw_deg, height_m]) = self.failure {
             writeln!(
                 f,
-                "after the rotor has stopped: roll or pitch {:.2} deg, yaw {:.2} deg, height {:.3} m at most",
-                failure.tilt_deg, failure.yaw_deg, failure.height_m
+                "after the rotor has stopped: roll or pitch {tilt_deg:.2} deg, yaw {yaw_deg:.2} deg, height {height_m:.3} m at most"
             )?;
         }
         if let Some([mean, rms, most, least]) = self.thrust_percent {
@@ -455,9 +430,9 @@ mod tests {
         });
         let plan = Manoeuvre::Failure.plan();
         let after = Flown(&record).after_failure(FIRST_S, &plan).unwrap();
-        assert!((after.tilt_deg - 2.5).abs() < 1e-9, "{after:?}");
+        let expected = [2.5, 20.0, 0.3];
         assert!(
-            (after.yaw_deg - 20.0).abs() < 1e-9 && (after.height_m - 0.3).abs() < 1e-9,
+            after.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-9),
             "{after:?}"
         );
     }

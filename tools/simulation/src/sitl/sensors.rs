@@ -30,35 +30,6 @@ const FIELD: Vector3<f64> = Vector3::new(0.214_75, 0.007_97, 0.428_17);
 /// Radius of the earth, m.
 const EARTH_M: f64 = 6_371_000.0;
 
-/// Of a sample.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Inertial {
-    /// Specific force in the body, m/s2.
-    pub acceleration: Vector3<f64>,
-    /// Angular rate in the body, rad/s.
-    pub rate: Vector3<f64>,
-}
-
-/// Of the air.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Air {
-    /// Pressure, hPa.
-    pub pressure_hpa: f64,
-    /// Altitude over the sea that it stands for, m.
-    pub altitude_m: f64,
-    /// Temperature, degrees Celsius.
-    pub temperature_c: f64,
-}
-
-/// Of a satellite receiver.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Fix {
-    /// Latitude and longitude, degrees; altitude, m.
-    pub place: [f64; 3],
-    /// Velocity, m/s, north, east, down.
-    pub velocity: Vector3<f64>,
-}
-
 /// The sensors and their noise.
 #[derive(Clone, Debug)]
 pub struct Sensors {
@@ -80,12 +51,10 @@ impl Sensors {
         Vector3::from_fn(|_, _| size * normal(&mut self.source))
     }
 
-    /// Accelerometer and gyroscope.
-    pub fn inertial(&mut self, world: &World) -> Inertial {
-        Inertial {
-            acceleration: world.specific_force + self.noise(self.share * ACCELERATION_M_S2),
-            rate: world.state.rate + self.noise(self.share * RATE_RAD_S),
-        }
+    /// Accelerometer, m/s2, and gyroscope, rad/s, in the body.
+    pub fn inertial(&mut self, world: &World) -> [Vector3<f64>; 2] {
+        let [force, rate] = [ACCELERATION_M_S2, RATE_RAD_S].map(|size| self.noise(self.share * size));
+        [world.specific_force + force, world.state.rate + rate]
     }
 
     /// Magnetometer, gauss in the body.
@@ -93,25 +62,28 @@ impl Sensors {
         world.state.rotation().inverse() * FIELD + self.noise(self.share.max(LEAST_SHARE) * FIELD_GAUSS)
     }
 
-    /// Barometer, by the standard atmosphere.
-    pub fn air(&mut self, world: &World) -> Air {
-        let altitude = world.vehicle.altitude_m - world.state.position.z;
-        let pressure_hpa = 0.01 * atmosphere::pressure_at(altitude)
-            + self.share.max(LEAST_SHARE) * PRESSURE_HPA * normal(&mut self.source);
-        Air {
+    /// Barometer, by the standard atmosphere: pressure, hPa, the altitude over the sea that it stands for, m, and the temperature,
+    /// degrees Celsius.
+    pub fn air(&mut self, world: &World) -> [f64; 3] {
+        let altitude_m = world.vehicle.altitude_m - world.state.position.z;
+        let noise = self.share.max(LEAST_SHARE) * PRESSURE_HPA * normal(&mut self.source);
+        let pressure_hpa = 0.01 * atmosphere::pressure_at(altitude_m) + noise;
+        let stands_for_m = (1.0 - libm::pow(pressure_hpa / 1013.25, 1.0 / 5.255_88)) / 2.255_77e-5;
+        [
             pressure_hpa,
-            altitude_m: (1.0 - libm::pow(pressure_hpa / 1013.25, 1.0 / 5.255_88)) / 2.255_77e-5,
-            temperature_c: atmosphere::temperature_at(altitude) - 273.15,
-        }
+            stands_for_m,
+            atmosphere::temperature_at(altitude_m) - 273.15,
+        ]
     }
 
-    /// Satellite receiver.
-    pub fn fix(&mut self, world: &World) -> Fix {
-        let position = world.state.position + self.noise(self.share * POSITION_M);
-        Fix {
-            place: place(&position, world.vehicle.altitude_m),
-            velocity: world.state.velocity + self.noise(self.share * VELOCITY_M_S),
-        }
+    /// Satellite receiver: [`place`], and velocity, m/s, north, east, down.
+    pub fn fix(&mut self, world: &World) -> ([f64; 3], Vector3<f64>) {
+        let [position, velocity] = [POSITION_M, VELOCITY_M_S].map(|size| self.noise(self.share * size));
+        let state = &world.state;
+        (
+            place(&(state.position + position), world.vehicle.altitude_m),
+            state.velocity + velocity,
+        )
     }
 }
 
