@@ -81,7 +81,7 @@ const STALE: u8 = 6;
 
 /// How long a proof tries.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Effort {
+pub(crate) enum Patience {
     /// Gives up early where nothing can be said of a cell.
     Quick,
     /// Uses all cells that are allowed.
@@ -95,7 +95,7 @@ pub(crate) fn prove(
     map: &UnitMap,
     correction: &CorrectionBounds,
     aim: [f64; 2],
-    effort: Effort,
+    patience: Patience,
 ) -> Certificate {
     let inverse = &airframe.inverse;
     let tolerance = [inverse.thrust_tolerance_n, inverse.torque_tolerance_nm];
@@ -107,7 +107,7 @@ pub(crate) fn prove(
         .map(|cell| Open::new(&subject, cell, aim))
         .collect();
     while let Some(worst) = open.peek() {
-        let hopeless = cells >= MOST_UNBOUNDED && worst.excess.is_infinite() && effort == Effort::Quick;
+        let hopeless = cells >= MOST_UNBOUNDED && worst.excess.is_infinite() && patience == Patience::Quick;
         if worst.excess <= 1.0 || worst.stale >= STALE || cells >= MOST_CELLS || hopeless {
             break;
         }

@@ -12,7 +12,7 @@ use crate::model::PairMap;
 use crate::model::effectiveness::Effectiveness;
 use crate::model::law::{self, CorrectionTables};
 use crate::proof::residual::Residual;
-use crate::proof::{self, Certificate, CorrectionBounds, Effort};
+use crate::proof::{self, Certificate, CorrectionBounds, Patience};
 use crate::tables::{self, UnitMap};
 
 /// An evaluator with its table and what is known about it.
@@ -89,11 +89,11 @@ fn choose_by(
         let error = Residual::coarse_check(pair, &map).ratio(tolerance).max(fit_error);
         Attempt { map, error }
     };
-    let proven = |attempt: &Attempt, effort: Effort| {
+    let proven = |attempt: &Attempt, patience: Patience| {
         let map = &attempt.map;
         let mut residual = Residual::over_set(pair, map);
         let aim = [0, 1].map(|k| (SHARP * residual.efforts[k]).min(tolerance[k]));
-        let certificate = proof::prove(airframe, map, &correction, aim, effort);
+        let certificate = proof::prove(airframe, map, &correction, aim, patience);
         // Where the proof found it hardest, more may be missed than on the grid.
         for throttles in certificate.at {
             residual.look(pair, map, throttles.map(|throttle| pair.clamp(throttle)));
@@ -105,7 +105,7 @@ fn choose_by(
         }
     };
     let quick = |attempt: &Attempt| {
-        let selected = (attempt.error <= 1.0).then(|| proven(attempt, Effort::Quick));
+        let selected = (attempt.error <= 1.0).then(|| proven(attempt, Patience::Quick));
         selected.filter(Selected::holds)
     };
     let mut closest = attempt(cheapest);
@@ -121,11 +121,11 @@ fn choose_by(
             closest = next;
         }
     }
-    proven(&closest, Effort::Thorough)
+    proven(&closest, Patience::Thorough)
 }
 
-/// What the mixer may miss where it delivers: what is proven, not what the file allows, so that
-/// every shortage is flagged.
+/// Error below which a request counts as delivered: the proven bound, not what the file allows, so that
+/// any larger shortfall is flagged.
 pub(crate) fn tolerance(
     airframe: &Airframe,
     effectiveness: &Effectiveness,

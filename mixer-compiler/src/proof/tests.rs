@@ -23,7 +23,7 @@ fn prove_again(compiled: &crate::compiled::Compiled, tables: &crate::tables::Mix
         &tables.map(),
         &correction,
         aim,
-        Effort::Thorough,
+        Patience::Thorough,
     )
 }
 
@@ -265,7 +265,8 @@ fn limited_corners_are_bounded() {
         for coefficient in tables.inverse.coefficients.iter_mut().flatten() {
             *coefficient *= 1.0 + 0.1 * next() as f32;
         }
-        let half = 0.05 * next().abs().powi(3) + 1e-6;
+        let share = next().abs();
+        let half = 0.05 * share * share * share + 1e-6;
         let corner = [round & 1, round >> 1 & 1].map(|side| if side == 1 { high - half } else { low + half });
         let map = tables.map();
         let subject = Subject::new(airframe, &map, &correction);

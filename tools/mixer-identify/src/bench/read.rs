@@ -309,7 +309,7 @@ struct Cells {
     has_pulses: std::cell::Cell<bool>,
     /// Decimal mark by column.
     decimals: Vec<char>,
-    /// Most cells that have a name, and least of a row.
+    /// Columns with a name, and the fewest cells that a row may have.
     most: usize,
     least: usize,
 }

@@ -25,7 +25,7 @@ const FEWEST: usize = 6;
 const OTHER_VOLTAGE: f64 = 0.03;
 /// Throttle by which a run may end inside the range that is commanded.
 const SHORT: f64 = 0.05;
-/// Lowest measured throttle above which a rotor that stands still is far from what was measured.
+/// Where the lowest measured throttle is above this, throttle 0 is an extrapolation.
 const LOW: f64 = 0.15;
 
 /// Identifies a rotor alone from its run.
