@@ -79,6 +79,8 @@ const SURE: f64 = 4.0;
 const NEVER: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
 const TORQUE_AT_LOWEST: &str = "torque at the lowest equal throttles, beyond what the thrust there explains, over the \
                                            greatest";
+const LOWER_OVER_UPPER: &str =
+    "thrust of the lower rotor over the upper one's at equal throttles, per torque where it is known";
 const LOWEST: &str = "thrust at the lowest equal throttles over the greatest";
 const GROWS: &str = "power of the throttle with which thrust grows from middle to highest equal throttles";
 
@@ -113,7 +115,7 @@ pub const TABLE: [&[Number]; 4] = [&SIZES, &ROWS, &SHAPE, &VOLTAGE];
 type Outside = [&'static str; 2];
 
 #[rustfmt::skip]
-const SIZES: [Number; 7] = [
+const SIZES: [Number; 8] = [
     number("shaft power over electrical power", [0.4, 1.2], NEVER,
         |run| exact(median(run.points.iter().map(|p| p.shaft_w / p.power_w))?), [
             "the torque is a force at an arm, of another arm or in another unit, the current of one rotor, or the speed that of the motor's field",
@@ -136,10 +138,12 @@ const SIZES: [Number; 7] = [
         |run| run.single(|p, d| p.thrust / (1.2 * libm::pow(p.rpm / 60.0 * d * d, 2.0))), [
             "the diameter is not the propeller's (its radius, another unit), or the speed not the rotor's",
             "--diameter METRE from tip to tip; speed in revolutions per minute of the rotor, not of the motor's field"]),
-    number("thrust of the lower rotor over the upper one's at equal throttles, per torque where it is known", [0.45, 1.05], NEVER,
+    number(LOWER_OVER_UPPER, [0.45, f64::INFINITY], NEVER,
+        lower_over_upper, ["the stand of the lower rotor is in another unit than that of the upper one", "--unit lower_thrust=UNIT"]),
+    number(LOWER_OVER_UPPER, [f64::NEG_INFINITY, 1.05], NEVER,
         lower_over_upper, [
-            "one stand is in another unit, or the rotors are exchanged",
-            "--unit lower_thrust=UNIT or --unit upper_thrust=UNIT; --swap where the one taken as upper works in the wake"]),
+            "the one taken as upper works in the wake of the other, or its stand is in another unit",
+            "--swap exchanges the rotors; else --unit upper_thrust=UNIT"]),
 ];
 
 #[rustfmt::skip]
@@ -189,7 +193,7 @@ const VOLTAGE: [Number; 4] = [
             exact((high - low) / high).filter(|_| run.points.len() >= 5 && most > 2.0 * least)
         }, [
             "the voltage is that of the pack at rest, or was typed in",
-            "the voltage of each row under load (--column voltage=HEADER); without it no --voltage-exponent"]),
+            "the voltage of each row under load, --column voltage=HEADER; a supply that holds it to the last digit needs nothing"]),
     number("share of the sag that the throttles of the row before explain", [f64::NEG_INFINITY, 0.4], NEVER,
         |run| {
             let (own, volts) = (run.of(load), run.of(|p| p.voltage));

@@ -271,7 +271,7 @@ fn warnings(bench: Bench) -> String {
 #[test]
 #[ignore = "needs MIXER_BENCH_DATA"]
 fn numbers_of_right_files_are_measured() {
-    let mut found: BTreeMap<&str, (Number, Vec<f64>)> = BTreeMap::new();
+    let mut found: BTreeMap<String, (Number, Vec<f64>)> = BTreeMap::new();
     let files = maps::named(&["map10x10", "single_rotor", "bottom_rotor"]);
     for path in files
         .iter()
@@ -292,7 +292,7 @@ fn numbers_of_right_files_are_measured() {
                 number.name
             );
             found
-                .entry(number.name)
+                .entry(format!("{} {:?}", number.name, number.limits))
                 .or_insert((*number, Vec::new()))
                 .1
                 .push(value);
@@ -353,7 +353,7 @@ const MISTAKES: [Mistake; 13] = [
     ),
     (
         "lower stand in pounds under kg",
-        "one stand is in another unit",
+        "stand of the lower rotor is in another unit",
         |points| {
             points.iter_mut().for_each(|p| {
                 p.thrust -= 0.546 * p.cells[1].abs();

@@ -219,7 +219,7 @@ fn standing_out(count: usize, all: usize, left_out: bool) -> Option<String> {
     match count as f64 > SINGLE * all as f64 {
         true => Some(format!(
             "{count} of {all} rows stand out, too many for single bad rows: look for what they share (a propeller, a voltage, their \
-             place in the file), or measure again; --robust would hide it"
+             place in the file), or measure again; to leave them out would hide it"
         )),
         false => {
             (count > 0 && !left_out).then(|| format!("{count} rows stand out: --robust fits without them"))
