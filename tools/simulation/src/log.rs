@@ -5,7 +5,6 @@ use std::io::Write;
 use crate::flight::Flight;
 use crate::mixer::Method;
 use crate::table::Comparison;
-use crate::tracking::TrackingError;
 use crate::vehicle::ROTORS;
 
 /// Periods from one row of a flight's log to the next: 20 ms.
@@ -61,15 +60,12 @@ pub fn write_flight(flight: &Flight, to: impl Write) -> csv::Result<()> {
 /// What `to` cannot take.
 pub fn write_tracking(comparisons: &[Comparison], to: impl Write) -> csv::Result<()> {
     let mut writer = csv::Writer::from_writer(to);
-    let mut header = ["scenario", "seed", "mixer"].map(String::from).to_vec();
-    for name in TrackingError::NAMES {
-        header.extend(["x", "y", "z"].map(|axis| format!("{}_{axis}", name.to_lowercase())));
-    }
-    header.extend(["hover_thrust_per_weight", "yaw_mae_deg", "saturated_periods"].map(String::from));
-    writer.write_record(&header)?;
+    let names = "scenario,seed,mixer,mse_x,mse_y,mse_z,mae_x,mae_y,mae_z,maxae_x,maxae_y,maxae_z,\
+                 hover_thrust_per_weight,yaw_mae_deg,saturated_periods";
+    writer.write_record(names.split(','))?;
     for comparison in comparisons {
         for pair in &comparison.flights {
-            for method in [Method::Coaxial, Method::Conventional] {
+            for method in Method::BOTH {
                 let flight = pair.with(method);
                 let mut record = vec![
                     comparison.scenario.to_string(),

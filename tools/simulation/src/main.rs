@@ -66,7 +66,7 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
             }
         }
         if let Some(folder) = &arguments.csv {
-            for method in [Method::Coaxial, Method::Conventional] {
+            for method in Method::BOTH {
                 let path = folder.join(format!("{}-{method}.csv", scenario.slug()));
                 log::write_flight(first.with(method), create(&path)?)?;
             }

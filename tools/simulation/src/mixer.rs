@@ -24,6 +24,11 @@ pub enum Method {
     Conventional,
 }
 
+impl Method {
+    /// In the paper's order.
+    pub const BOTH: [Method; 2] = [Method::Coaxial, Method::Conventional];
+}
+
 impl fmt::Display for Method {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(match self {

@@ -157,13 +157,17 @@ impl<const R: usize> Plant<R> {
         state
     }
 
+    /// Level with a full battery, all rotors in steady state at one throttle.
+    pub fn alike(&self, throttle: f64) -> State<R> {
+        let rotors = 2 * self.units.len();
+        let command = SVector::from_fn(|channel, _| if channel < rotors { throttle } else { 0.0 });
+        self.steady(&State::level(Vector3::zeros(), 0.0), &command)
+    }
+
     /// Throttle of all rotors that carries the weight with the battery full; `None` where full throttle does not.
     pub fn hover_throttle(&self) -> Option<f64> {
-        let rotors = 2 * self.units.len();
-        let alike = |throttle| SVector::from_fn(|channel, _| if channel < rotors { throttle } else { 0.0 });
-        let lifts = |throttle: f64| {
-            let state = self.steady(&State::level(Vector3::zeros(), 0.0), &alike(throttle));
-            let (force, _) = self.rotor_wrench(&state, &SVector::zeros());
+        let lifts = |throttle| {
+            let (force, _) = self.rotor_wrench(&self.alike(throttle), &SVector::zeros());
             -force.z > self.body.mass_kg * GRAVITY_M_S2
         };
         let [mut low, mut high] = [0.0, 1.0];

@@ -47,7 +47,7 @@ impl fmt::Display for Comparison {
             }
         }
         writeln!(f)?;
-        for method in [Method::Coaxial, Method::Conventional] {
+        for method in Method::BOTH {
             let over = |value: fn(&crate::flight::Flight) -> f64| {
                 Spread::of(flights.iter().map(|pair| value(pair.with(method))))
             };

@@ -66,6 +66,7 @@ pub struct Arguments {
     #[arg(long, value_name = "M", value_parser = altitude, allow_negative_numbers = true)]
     pub altitude: Option<f64>,
     /// Home at the altitude of this density, kg/m3
+    // It is the altitude, m.
     #[arg(long, value_name = "KG_M3", value_parser = density, conflicts_with = "altitude")]
     pub density: Option<f64>,
     /// Mass, kg, instead of the file's
@@ -134,21 +135,20 @@ fn positive(text: &str) -> Result<f64, String> {
 }
 
 fn altitude(text: &str) -> Result<f64, String> {
-    within(text, ALTITUDES_M, "m")
+    number(text).and_then(flown)
 }
 
+/// The altitude of a density.
 fn density(text: &str) -> Result<f64, String> {
-    let [most, least] =
-        ALTITUDES_M.map(|altitude_m| (1e3 * atmosphere::density_at(altitude_m)).round() / 1e3);
-    within(text, [least, most], "kg/m3")
+    positive(text).map(atmosphere::altitude_of).and_then(flown)
 }
 
-fn within(text: &str, [least, most]: [f64; 2], unit: &str) -> Result<f64, String> {
-    let value = number(text)?;
+fn flown(altitude_m: f64) -> Result<f64, String> {
+    let [least, most] = ALTITUDES_M;
     (least..=most)
-        .contains(&value)
-        .then_some(value)
-        .ok_or_else(|| format!("must be from {least} to {most} {unit}"))
+        .contains(&altitude_m)
+        .then_some(altitude_m)
+        .ok_or_else(|| format!("an altitude of {altitude_m:.0} m: must be from {least} to {most} m"))
 }
 
 fn failure(text: &str) -> Result<Failure, String> {

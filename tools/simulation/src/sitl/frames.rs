@@ -114,8 +114,14 @@ fn parse(bytes: &[u8]) -> Option<Option<(MavHeader, MavMessage)>> {
     Some(message.flatten().map(|message| (header, message)))
 }
 
-/// A frame of the second version.
-pub fn frame(header: MavHeader, message: &MavMessage) -> Vec<u8> {
+/// A frame of the second version, of a system and component, and its number, which goes on.
+pub fn frame(sequence: &mut u8, [system_id, component_id]: [u8; 2], message: &MavMessage) -> Vec<u8> {
+    let header = MavHeader {
+        system_id: system_id.into(),
+        component_id,
+        sequence: *sequence,
+    };
+    *sequence = sequence.wrapping_add(1);
     let mut raw = MAVLinkV2MessageRaw::new();
     raw.serialize_message(header, message);
     raw.raw_bytes().to_vec()
@@ -133,7 +139,7 @@ mod tests {
             component_id: 1,
             sequence: 3,
         };
-        let mut bytes = frame(header, &heartbeat());
+        let mut bytes = frame(&mut 3, [7, 1], &heartbeat());
         let mut old = MAVLinkV1MessageRaw::new();
         old.serialize_message(header, &heartbeat());
         bytes.extend(old.raw_bytes());
@@ -154,14 +160,14 @@ mod tests {
         let mut frames = Frames::default();
         // Number 9999 is in no dialect that this reads: its checksum cannot be told.
         frames.push(&[0xfd, 1, 0, 0, 0, 1, 1, 0x0f, 0x27, 0, 42, 0, 0]);
-        frames.push(&frame(MavHeader::default(), &heartbeat()));
+        frames.push(&frame(&mut 0, [1, 1], &heartbeat()));
         assert_eq!(frames.by_ref().count(), 1);
         assert_eq!(frames.malformed, 0);
-        let mut corrupt = frame(MavHeader::default(), &heartbeat());
+        let mut corrupt = frame(&mut 0, [1, 1], &heartbeat());
         corrupt[12] ^= 1;
         frames.push(&corrupt);
         frames.push(b"and more");
-        frames.push(&frame(MavHeader::default(), &heartbeat()));
+        frames.push(&frame(&mut 0, [1, 1], &heartbeat()));
         assert_eq!(frames.by_ref().count(), 1);
         assert_eq!(frames.malformed, 1);
     }

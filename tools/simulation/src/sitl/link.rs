@@ -119,14 +119,8 @@ impl Link {
     }
 
     /// Sends as a system and component. What cannot be sent is lost, as on any such link.
-    pub fn send_as(&mut self, [system_id, component_id]: [u8; 2], message: &MavMessage) {
-        let header = MavHeader {
-            system_id: system_id.into(),
-            component_id,
-            sequence: self.sequence,
-        };
-        self.sequence = self.sequence.wrapping_add(1);
-        let frame = frame(header, message);
+    pub fn send_as(&mut self, who: [u8; 2], message: &MavMessage) {
+        let frame = frame(&mut self.sequence, who, message);
         match &mut self.way {
             Way::Udp(socket, Some(peer)) => {
                 let _ = socket.send_to(&frame, *peer);

@@ -9,7 +9,6 @@ use std::iter::repeat;
 use std::net::{Ipv4Addr, TcpListener, TcpStream};
 use std::time::{Duration, Instant};
 
-use mavlink::MavHeader;
 use mavlink::dialects::common::{
     HIL_ACTUATOR_CONTROLS_DATA, HIL_GPS_DATA, HIL_SENSOR_DATA, HIL_STATE_QUATERNION_DATA,
     HilSensorUpdatedFlags, MavMessage, MavModeFlag,
@@ -43,6 +42,9 @@ const PERIOD: Duration = Duration::from_micros(PERIOD_US);
 /// the air's: it would take 15 degrees Celsius.
 const INERTIAL_FIELDS: u32 = 0b11_1111;
 const SLOW_FIELDS: u32 = 0b1_1111_1100_0000;
+
+/// System and component of the simulator.
+const SIMULATOR: [u8; 2] = [1, 51];
 
 /// PX4's port of a simulator for instance 0.
 pub const PORT: u16 = 4560;
@@ -115,13 +117,8 @@ impl Px4 {
     }
 
     fn send(&mut self, message: &MavMessage) -> Result<(), String> {
-        let header = MavHeader {
-            system_id: 1,
-            component_id: 51,
-            sequence: self.sequence,
-        };
-        self.sequence = self.sequence.wrapping_add(1);
-        self.stream.write_all(&frame(header, message)).map_err(vanished)
+        let frame = frame(&mut self.sequence, SIMULATOR, message);
+        self.stream.write_all(&frame).map_err(vanished)
     }
 
     /// Waits for the outputs that follow the sample of `time_us`. Before PX4 answers at all, it is

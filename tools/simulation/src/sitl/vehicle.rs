@@ -14,7 +14,6 @@ use super::arguments::Arguments;
 use crate::air::normal;
 use crate::battery::Battery;
 use crate::plant::Plant;
-use crate::state::State;
 use crate::vehicle::{Body, GRAVITY_M_S2};
 
 /// Most rotors: the channels of ArduPilot's larger packet.
@@ -132,8 +131,7 @@ impl Vehicle {
             full_throttle_a: 0.0,
         };
         let mismatch = spread(arguments.spread, arguments.seed, rotors);
-        let thin = arguments.density.map(atmosphere::altitude_of);
-        let thin = thin.or(arguments.altitude);
+        let thin = arguments.density.or(arguments.altitude);
         let bench_m = own.air.as_ref().map(|air| atmosphere::altitude_of(air.reference));
         let plant = |battery: Battery| {
             let plant = Plant::new(&flown, body, battery, mismatch).scaled(arguments.thrust_scale);
@@ -147,14 +145,14 @@ impl Vehicle {
         let rough = plant(battery)?;
         let hover = |plant: &Plant<MOST_ROTORS>| plant.hover_throttle().ok_or_else(too_heavy);
         let hover_throttle = hover(&rough)?;
-        let state = rough.steady(
-            &State::level(Vector3::zeros(), 0.0),
-            &alike(hover_throttle, rotors),
-        );
         let power_w = flown
             .power_w(&vec![hover_throttle; rotors])
             .unwrap_or(HOVER_W_PER_KG * mass_kg);
-        let cubes = state.speed.map(|speed| speed * speed * speed).sum();
+        let cubes = rough
+            .alike(hover_throttle)
+            .speed
+            .map(|speed| speed * speed * speed)
+            .sum();
         battery.full_throttle_a = power_w / (full_v * cubes);
         battery.resistance_ohm = arguments.resistance;
         let plant = plant(battery)?;
@@ -201,11 +199,6 @@ fn spread(size: f64, seed: u64, rotors: usize) -> Throttles {
         let deviate = normal(&mut source);
         if rotor < rotors { size * deviate } else { 0.0 }
     })
-}
-
-/// All rotors at one throttle.
-pub fn alike(throttle: f64, rotors: usize) -> Throttles {
-    Throttles::from_fn(|rotor, _| if rotor < rotors { throttle } else { 0.0 })
 }
 
 #[cfg(test)]
@@ -267,9 +260,9 @@ mod tests {
 
     /// Force and torque of all rotors at one throttle.
     fn wrench(vehicle: &Vehicle, throttle: f64) -> (Vector3<f64>, Vector3<f64>) {
-        let state = State::level(Vector3::zeros(), 0.0);
-        let state = vehicle.plant.steady(&state, &alike(throttle, vehicle.rotors));
-        vehicle.plant.rotor_wrench(&state, &SVector::zeros())
+        vehicle
+            .plant
+            .rotor_wrench(&vehicle.plant.alike(throttle), &SVector::zeros())
     }
 
     #[test]
@@ -352,10 +345,7 @@ mod tests {
             "5",
         ];
         let vehicle = vehicle(Path::new(file), &flags).unwrap();
-        let state = State::level(Vector3::zeros(), 0.0);
-        let mut state = vehicle
-            .plant
-            .steady(&state, &alike(vehicle.hover_throttle, vehicle.rotors));
+        let mut state = vehicle.plant.alike(vehicle.hover_throttle);
         // 80 W/kg: some 15.4 A, which take 0.39 V.
         let sag = 16.6 - vehicle.plant.voltage_v(&state);
         assert!((0.38..0.45).contains(&sag), "{sag}");

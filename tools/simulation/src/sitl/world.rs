@@ -129,7 +129,8 @@ impl World {
         let rotation = self.state.rotation();
         let cosine = (rotation * Vector3::z()).z;
         if self.state.velocity.z > CRASH_SPEED_M_S || cosine < CRASH_COSINE {
-            self.crashed_s.get_or_insert(self.time_us as f64 * 1e-6);
+            let time_s = self.time_s();
+            self.crashed_s.get_or_insert(time_s);
         }
         self.state.position.z = 0.0;
         self.state.velocity.z = self.state.velocity.z.min(0.0);
@@ -151,14 +152,13 @@ mod tests {
 
     use super::*;
     use crate::sitl::arguments::Arguments;
-    use crate::sitl::vehicle::alike;
 
     #[test]
     fn the_accelerometer_measures_thrust_and_drag() {
         let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/simulator/x8.toml");
         let arguments = Arguments::try_parse_from(["sitl", file, "--px4"]).unwrap();
         let vehicle = Vehicle::new(&arguments).unwrap();
-        let command = alike(1.02 * vehicle.hover_throttle, vehicle.rotors);
+        let command = Throttles::repeat(1.02 * vehicle.hover_throttle);
         let mut world = World::new(vehicle);
         world.push_m_s2 = Vector3::new(2.0, 0.0, 0.0);
         world.advance(&command, 3_000_000);
