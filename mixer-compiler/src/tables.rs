@@ -14,8 +14,8 @@ mod single;
 use mixer_rt::{
     Conditions, Health, Saturation, SetpointError, Wrench,
     tables::{
-        Border, Cell, ClosedForm, ClosedFormUnit, Facets, Inverse, Pair, Priorities, SingleRotor, Tables,
-        ThrottleRange, Tolerance, Unit, UnitState,
+        Border, Cell, ClosedForm, ClosedFormUnit, Facets, Inverse, Pair, Priorities, SingleRotor, Steep,
+        Tables, ThrottleRange, Tolerance, Unit, UnitState,
     },
 };
 
@@ -119,6 +119,8 @@ pub struct ClosedFormTable {
     pub slopes: Vec<Facets>,
     /// Facets whose normals have no thrust component.
     pub walls: Vec<Facets>,
+    /// Slopes that are walls at the thrust asked.
+    pub steep: Vec<Steep>,
 }
 
 impl ClosedFormTable {
@@ -133,6 +135,7 @@ impl ClosedFormTable {
             border,
             slopes: &self.slopes,
             walls: &self.walls,
+            steep: &self.steep,
             ..self.numbers
         }
     }

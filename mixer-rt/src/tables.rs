@@ -8,6 +8,7 @@ pub const FORMAT: u32 = 1;
 
 pub use crate::allocate::closed_form::{
     AllocationMethod, Border, Cell, ClosedForm, ClosedFormUnit, Facets, Grid, Knot, NoClosedForm, Outline,
+    Steep,
 };
 pub use crate::allocate::interior::ITERATIONS;
 pub use crate::allocate::priorities::{Airmode, Priorities, REQUEST_LIMIT};

@@ -1,6 +1,8 @@
 //! Requests that no controller sends, voltages that no battery has, and frames at the edge of what
 //! makes sense.
 
+use std::f64::consts::TAU;
+
 use mixer_rt::{Axis, Health, SetpointError};
 use mixer_setpoints::Random;
 use mixer_tests::frames::{self, AIRMODES, Place};
@@ -8,7 +10,7 @@ use mixer_tests::golden;
 use mixer_tests::request::{Answer, Frame, Request};
 use mixer_tests::soundness;
 
-use crate::{REFERENCE_V, compile};
+use crate::{REFERENCE_V, all_rotors, compile};
 
 pub(crate) const NUMBERS: [f32; 14] = [
     0.0,
@@ -176,5 +178,31 @@ fn no_density_means_that_of_the_bench() {
             health: Health::GOOD,
         };
         assert_eq!(request(Some(density)).mix(&without), request(None).mix(&without));
+    }
+}
+
+/// About a centre of gravity that is a little off, two facets are nearly walls: along them half the thrust would be
+/// given up for a trace of roll and pitch, and throttles would follow in steps.
+#[test]
+fn throttles_follow_along_steep_facets() {
+    const NEXT: f64 = 1e-4;
+    let mut places = frames::regular(4, 45.0);
+    for place in &mut places {
+        place.position[0] += 0.012;
+        place.position[1] -= 0.008;
+    }
+    let frame = compile(&places, "disabled", 0.0);
+    for direction in 0..24 {
+        let (sin, cos) = libm::sincos(f64::from(direction) * TAU / 24.0);
+        let mut before: Option<Answer> = None;
+        for k in 2000..6000 {
+            let size = NEXT * f64::from(k);
+            let shares = [cos * size, sin * size, 0.0, 0.9];
+            let asked: [f32; 4] = std::array::from_fn(|axis| (shares[axis] * frame.authority[axis]) as f32);
+            let answer = all_rotors(asked, REFERENCE_V).mix(&frame).expect("finite");
+            let step = before.map_or(0.0, |before| answer.change(&before));
+            assert!(step < 0.02, "{step} at {asked:?}");
+            before = Some(answer);
+        }
     }
 }

@@ -473,6 +473,7 @@ pub mod coaxial_bicopter {
             },
         ],
         walls: &[],
+        steep: &[],
         torque_share: 0.5,
         thrust_floor_n: 1.1564839,
         thrust_middle_n: 25.36594,

@@ -520,6 +520,7 @@ pub mod isae_x8 {
                 bounds: [-10.894322, 10.894322],
             },
         ],
+        steep: &[],
         torque_share: 0.25,
         thrust_floor_n: 2.3129678,
         thrust_middle_n: 50.73188,

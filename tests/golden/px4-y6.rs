@@ -501,6 +501,7 @@ pub mod px4_y6 {
             },
         ],
         walls: &[],
+        steep: &[],
         torque_share: 0.33333334,
         thrust_floor_n: 1.8799828,
         thrust_middle_n: 37.93997,

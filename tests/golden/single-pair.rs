@@ -432,6 +432,7 @@ pub mod single_pair {
             },
         ],
         walls: &[],
+        steep: &[],
         torque_share: 1.0,
         thrust_floor_n: 0.62666094,
         thrust_middle_n: 12.646656,

@@ -587,6 +587,7 @@ pub mod x8_11in_cubic {
                 bounds: [-5.255533, 5.255533],
             },
         ],
+        steep: &[],
         torque_share: 0.25,
         thrust_floor_n: 2.0041628,
         thrust_middle_n: 37.041046,

@@ -620,6 +620,7 @@ pub mod x8_11in_least_power {
                 bounds: [-5.90207, 5.90207],
             },
         ],
+        steep: &[],
         torque_share: 0.25,
         thrust_floor_n: 2.0660932,
         thrust_middle_n: 41.413227,

@@ -561,6 +561,7 @@ pub mod x8_16in_biquadratic {
                 bounds: [-18.621574, 18.621574],
             },
         ],
+        steep: &[],
         torque_share: 0.25,
         thrust_floor_n: 2.5588338,
         thrust_middle_n: 85.32139,

@@ -573,6 +573,7 @@ pub mod x8_16in_quartic {
                 bounds: [-17.138805, 17.138805],
             },
         ],
+        steep: &[],
         torque_share: 0.25,
         thrust_floor_n: 8.757234,
         thrust_middle_n: 84.9297,

@@ -571,6 +571,7 @@ pub mod x8_22in_cubic {
                 bounds: [-32.773666, 32.773666],
             },
         ],
+        steep: &[],
         torque_share: 0.25,
         thrust_floor_n: 16.248741,
         thrust_middle_n: 125.49426,

@@ -5,7 +5,7 @@ mod outline;
 
 use mixer_rt::{
     Axis,
-    tables::{Airmode, ClosedForm, ClosedFormUnit, Facets},
+    tables::{Airmode, ClosedForm, ClosedFormUnit, Facets, Steep},
 };
 use nalgebra::Vector3;
 
@@ -23,6 +23,10 @@ const YAW_ROUNDING: f64 = 1e-5;
 /// A unit whose thrust changes by less than this share of the largest along the null space has no
 /// part in it.
 const NO_PART: f64 = 1e-5;
+
+/// Shares of all thrust per share of all roll and pitch from which a facet is steep: the ratio of their costs in the
+/// interior point method.
+const STEEP: f64 = 20.0;
 
 /// The thrusts of the units in what is served of roll, pitch and thrust.
 struct Layout {
@@ -88,6 +92,7 @@ pub(crate) fn table(
             border,
             slopes: &[],
             walls: &[],
+            steep: &[],
             torque_share: 1.0 / n as f32,
             thrust_floor_n: 0.0,
             thrust_middle_n: 0.0,
@@ -95,6 +100,7 @@ pub(crate) fn table(
         },
         units: units(airframe, effectiveness, &null_vector(&columns, &free), thrust_n),
         cells,
+        steep: steep(&slopes, &columns, thrust_n),
         slopes,
         walls,
     };
@@ -214,6 +220,41 @@ fn facets(
         }
     }
     (slopes, walls)
+}
+
+/// The steep ones among `slopes`, with their ranges of thrust: on a facet every unit is at the bound that the normal leads
+/// to, but for those that span it.
+fn steep(slopes: &[Facets], columns: &[Vector3<f64>], thrust_n: [f32; 2]) -> Vec<Steep> {
+    let all = columns
+        .iter()
+        .fold(Vector3::zeros(), |all, column| all + column.abs());
+    let is_steep = |facets: &&Facets| {
+        let [roll, pitch] = [0, 1].map(|axis| f64::from(facets.normal[axis]) * all[axis] / all[2]);
+        libm::hypot(roll, pitch) > STEEP
+    };
+    let range = |facets: &Facets, side: usize| {
+        let [roll, pitch] = facets.normal.map(f64::from);
+        let end = |k: usize| -> f32 {
+            let thrust = |column: &Vector3<f64>| {
+                let parts = [roll * column[0], pitch * column[1], column[2]];
+                let along: f64 = parts.iter().sum();
+                let is_spanning = along.abs() < 1e-5 * parts.iter().map(|part| part.abs()).sum::<f64>();
+                let of_side = if along > 0.0 { side } else { 1 - side };
+                column[2] as f32 * thrust_n[if is_spanning { k } else { of_side }]
+            };
+            columns.iter().map(thrust).sum()
+        };
+        // Level flight is not beyond the facet.
+        let [low, high] = facets.bounds;
+        [0, 1].map(|k| end(k).clamp(low, high))
+    };
+    let steep = slopes.iter().filter(is_steep);
+    steep
+        .map(|facets| Steep {
+            facets: *facets,
+            thrusts_n: [0, 1].map(|side| range(facets, side)),
+        })
+        .collect()
 }
 
 /// Thrusts that give no roll, pitch and thrust but along the `free` axes, the largest being 1;

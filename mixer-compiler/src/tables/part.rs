@@ -3,7 +3,7 @@
 
 use mixer_rt::tables::{
     Airmode, Border, Cell, ClosedForm, ClosedFormUnit, Facets, Grid, Knot, Law, LawPiece, Outline, Pair,
-    Priorities, SingleRotor, ThrottleRange, Tolerance, Unit,
+    Priorities, SingleRotor, Steep, ThrottleRange, Tolerance, Unit,
 };
 use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::{ToTokens, quote};
@@ -109,7 +109,7 @@ parts! {
     LawPiece { start, thrust, torque };
     Priorities { airmode, yaw_reserve_nm };
     ClosedForm<'_> {
-        units, complete, thrust_n, border, slopes, walls, torque_share, thrust_floor_n, thrust_middle_n,
+        units, complete, thrust_n, border, slopes, walls, steep, torque_share, thrust_floor_n, thrust_middle_n,
         yaw_rounding_nm
     };
     ClosedFormUnit { allocation, arms, spin, null, per_null, ends, channels };
@@ -119,6 +119,7 @@ parts! {
     Outline { slope, knots };
     Knot { thrust_n, drop };
     Facets { normal, bounds };
+    Steep { facets, thrusts_n };
     Tolerance { efforts, wrench };
 }
 

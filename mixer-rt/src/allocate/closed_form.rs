@@ -71,6 +71,15 @@ pub struct Facets {
     pub bounds: [f32; 2],
 }
 
+/// Facets so steep that a little of roll and pitch is worth much thrust, beside their place among the slopes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Steep {
+    /// Among the slopes, too.
+    pub facets: Facets,
+    /// The ranges of thrust of the lower and of the upper one, N.
+    pub thrusts_n: [[f32; 2]; 2],
+}
+
 /// What a frame with vertical axes and up to four units needs. All at the reference voltage.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClosedForm<'a> {
@@ -87,6 +96,8 @@ pub struct ClosedForm<'a> {
     pub slopes: &'a [Facets],
     /// Facets whose normals have no thrust component.
     pub walls: &'a [Facets],
+    /// Slopes that are walls at the thrust asked.
+    pub steep: &'a [Steep],
     /// Least-norm torque of a unit, N m per N m of yaw, but for its sign: 1 / n.
     pub torque_share: f32,
     /// Least thrust without torque, N.

@@ -4,11 +4,15 @@
 //! in pairs, `low <= d w <= high`. For a given direction of (roll, pitch) a facet is a line in the
 //! plane of (rho, thrust): the largest rho, and then the thrust nearest the request, are a linear
 //! programme in two unknowns.
+//!
+//! A facet that is steep, as walls are but for unequal arms, would exchange much thrust for a trace of roll and pitch: it
+//! is taken as the wall that it is at the thrust asked, within the facet. So roll and pitch are given up where that frees
+//! more than twenty times as much thrust, as by the costs of the interior point method.
 
 use core::hint::black_box;
 
-use super::{ClosedForm, Facets};
-use crate::{divisor, quotient, rolled};
+use super::{ClosedForm, Facets, Steep};
+use crate::{clamp, divisor, quotient, rolled};
 
 /// A gap between thrust bounds that is below this share of a unit's largest thrust is none: sums of
 /// four have errors of that size.
@@ -21,14 +25,24 @@ impl Facets {
 
 impl ClosedForm<'_> {
     /// The largest share of (roll, pitch) up to 1 that some thrust of at most `ceiling` allows, and
-    /// the thrusts that it allows.
+    /// the thrusts that it allows, where `thrust` is asked.
     #[inline(always)]
-    pub(super) fn share(&self, roll: f32, pitch: f32, ceiling: f32) -> (f32, [f32; 2]) {
+    pub(super) fn share(&self, roll: f32, pitch: f32, thrust: f32, ceiling: f32) -> (f32, [f32; 2]) {
         let mut share = 1.0;
         for Facets { normal, bounds } in rolled(self.walls) {
             let speed = normal[0] * roll + normal[1] * pitch;
             let limit = if speed > 0.0 { bounds[1] } else { bounds[0] };
             if speed > bounds[1] || speed < bounds[0] {
+                let most = quotient(limit, speed);
+                share = if most < share { most } else { share };
+            }
+        }
+        for Steep { facets, thrusts_n } in rolled(self.steep) {
+            let speed = facets.normal[0] * roll + facets.normal[1] * pitch;
+            let side = usize::from(speed > 0.0);
+            let [least, most] = thrusts_n[side];
+            let limit = facets.bounds[side] - clamp(thrust, least, most);
+            if speed.abs() > limit.abs() {
                 let most = quotient(limit, speed);
                 share = if most < share { most } else { share };
             }

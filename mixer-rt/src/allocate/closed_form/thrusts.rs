@@ -47,7 +47,7 @@ impl ClosedForm<'_> {
         [ceiling, middle]: [f32; 2],
         lines: &mut [ThrustLine],
     ) -> (f32, [f32; 2]) {
-        let (share, range) = self.share(request.roll, request.pitch, ceiling);
+        let (share, range) = self.share(request.roll, request.pitch, request.thrust, ceiling);
         let thrust = clamp(request.thrust, range[0], range[1]);
         let mut wrench = [share * request.roll, share * request.pitch, thrust];
         let [low, high] = self.null_range(lines, &wrench);

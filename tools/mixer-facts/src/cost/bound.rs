@@ -128,7 +128,7 @@ fn closed_form(compiled: &Compiled, table: &ClosedFormTable) -> Option<u32> {
     let inverses = n * (evaluator + forward(basis));
     let reach = REACH + n * REACH_UNIT;
     let step = STEP + FACETS * table.slopes.len() as u32;
-    let walls = STEP + FACETS * table.walls.len() as u32;
+    let walls = STEP + FACETS * (table.walls.len() + table.steep.len()) as u32;
     let moved = table.units.iter().filter(|unit| unit.null != 0.0).count() as u32;
     let top = |moved: u32| n * KNOTS + moved * Outline::KNOTS as u32 * (KNOT + n * KNOT_UNIT);
     let climb = if moved == 0 { 0 } else { CLIMB * reach + top(moved) };
