@@ -126,7 +126,7 @@ const SIZES: [Number; 8] = [
             exact((high.max(0.0) - low.min(0.0)) / run.most(|p| p.thrust)).filter(|[x, _]| *x > 0.0)
         }, [
             "propellers of 4 to 40 inch have that: a unit is another one, or this is no run of ONE rotor",
-            "the units of both: --unit thrust=UNIT, --unit torque=UNIT"]),
+            "the units of both: --unit thrust=UNIT, --unit torque=UNIT; where one signal drives both rotors of a pair, PRIOR"]),
     number("torque per thrust in diameters", [0.02, 0.15], [0.02, 0.15],
         |run| run.single(|p, d| p.torque / p.thrust / d), ONE_ROTOR),
     number("disc loading in N/m2", [15.0, 2500.0], [15.0, 2500.0],
