@@ -64,6 +64,7 @@ pub(crate) enum Back {
     /// They describe what is on the vehicle, and no airframe file has it.
     Stays,
 }
+
 /// Parameters, `#` standing for a number, `*` for any beginning.
 pub(crate) type Read = (Back, &'static [&'static str]);
 

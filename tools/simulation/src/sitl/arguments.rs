@@ -66,9 +66,9 @@ pub struct Arguments {
     #[arg(long, value_name = "M", value_parser = altitude, allow_negative_numbers = true)]
     pub altitude: Option<f64>,
     /// Home at the altitude of this density, kg/m3
-    // It is the altitude, m.
-    #[arg(long, value_name = "KG_M3", value_parser = density, conflicts_with = "altitude")]
-    pub density: Option<f64>,
+    // Read as that altitude, m.
+    #[arg(long = "density", value_name = "KG_M3", value_parser = density_altitude, conflicts_with = "altitude")]
+    pub density_altitude: Option<f64>,
     /// Mass, kg, instead of the file's
     #[arg(long, value_parser = positive)]
     pub mass_kg: Option<f64>,
@@ -139,7 +139,7 @@ fn altitude(text: &str) -> Result<f64, String> {
 }
 
 /// The altitude of a density.
-fn density(text: &str) -> Result<f64, String> {
+fn density_altitude(text: &str) -> Result<f64, String> {
     positive(text).map(atmosphere::altitude_of).and_then(flown)
 }
 

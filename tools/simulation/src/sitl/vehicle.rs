@@ -131,7 +131,7 @@ impl Vehicle {
             full_throttle_a: 0.0,
         };
         let mismatch = spread(arguments.spread, arguments.seed, rotors);
-        let thin = arguments.density.or(arguments.altitude);
+        let thin = arguments.density_altitude.or(arguments.altitude);
         let bench_m = own.air.as_ref().map(|air| atmosphere::altitude_of(air.reference));
         let plant = |battery: Battery| {
             let plant = Plant::new(&flown, body, battery, mismatch).scaled(arguments.thrust_scale);
