@@ -10,7 +10,7 @@ pub use crate::allocate::closed_form::{
     AllocationMethod, Border, Cell, ClosedForm, ClosedFormUnit, Facets, Grid, Knot, NoClosedForm, Outline,
     Steep,
 };
-pub use crate::allocate::interior::ITERATIONS;
+pub use crate::allocate::interior::MOST_ITERATIONS;
 pub use crate::allocate::priorities::{Airmode, Priorities, REQUEST_LIMIT};
 pub use crate::allocate::unit::UnitState;
 pub use crate::arithmetic::{Scalar, sqrt};

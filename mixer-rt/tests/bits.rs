@@ -9,13 +9,13 @@ use mixer_rt::tables::Airmode;
 
 /// Digests with none, one and two rotors out. Where a change of bits is meant, the test prints what
 /// belongs here.
-const X8: [u64; 3] = [0x90821a6853dbf632, 0x1ef359a1ef708a19, 0x005bf887619e63dd];
-const TILTED: [u64; 3] = [0x40bcc314bc6e185f, 0x4e44a5318587cf69, 0xc6dc193affa22d32];
+const X8: [u64; 3] = [0x90821a6853dbf632, 0xe704839ac433d27c, 0xf93c6e4ac7920467];
+const TILTED: [u64; 3] = [0x01f2c526cf073a7b, 0x0af1e3a3b1076167, 0x6bfa948b5d6719f2];
 
 /// The same with all rotors: with a reserve, which empties the ranges of the null space near the corners, and with a
 /// power bias.
 const X8_RESERVE: u64 = 0x4be5ae7308aed53f;
-const BIASED: [u64; 2] = [0x506cbb7b4cffff8d, 0x2ff848d7195e27fe];
+const BIASED: [u64; 2] = [0x506cbb7b4cffff8d, 0xe5b01373f2f5a93d];
 
 /// Requests per digest.
 const REQUESTS: usize = 400;

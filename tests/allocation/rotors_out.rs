@@ -101,6 +101,53 @@ fn yaw_keeps_its_sign_on_a_y6() {
     }
 }
 
+/// Of the wrenches that throttles give with a rotor out, half of them with most rotors at an end of the range, 99.9 % are
+/// delivered: none of them needs a judge to be attainable.
+#[test]
+fn what_the_other_rotors_give_is_delivered() {
+    let mut random = Random::new(number("MIXER_SEED", 71));
+    let (mut asked, mut missed) = (0, Vec::new());
+    for path in [PAIRS[1], PAIRS[2]] {
+        for units in [3, 4, 6] {
+            let frame = frame(path, units, "roll-pitch", 0.0);
+            let count = number("MIXER_REQUESTS", 1000);
+            for (channel, request) in [0, 1]
+                .into_iter()
+                .flat_map(|channel| (0..count).map(move |k| (channel, k)))
+            {
+                let health = out(&[channel]);
+                let shares = (0..2 * units).map(|_| match random.below(3) {
+                    end @ (0 | 1) if request % 2 == 0 => end as f64,
+                    _ => random.uniform(0.0, 1.0),
+                });
+                let shares: Vec<f64> = shares.collect();
+                let throttles = frame.physics.throttles(shares.into_iter(), health);
+                let wrench = frame.physics.wrench(&throttles, REFERENCE_V);
+                let request = Request {
+                    wrench: wrench.map(|value| value as f32),
+                    volts: REFERENCE_V,
+                    density: None,
+                    health,
+                };
+                let answer = request.mix(&frame).expect("finite");
+                let short = (0..4)
+                    .map(|axis| (answer.achieved[axis] - wrench[axis]).abs() / frame.size(axis))
+                    .fold(0.0, f64::max);
+                asked += 1;
+                if short > 0.01 {
+                    missed.push((path, units, short, request));
+                }
+            }
+        }
+    }
+    println!("{} of {asked} missed", missed.len());
+    assert!(
+        1000 * missed.len() <= asked,
+        "{} of {asked}: {missed:#?}",
+        missed.len()
+    );
+}
+
 /// A rotor alone, extrapolated, gives its least thrust well inside the range: no inverse of its thrust
 /// is exact there.
 const FLAT: &str = "[throttle]

@@ -73,7 +73,7 @@ impl Shortage {
     /// As [`Unknown::eliminate`]: takes the rest from the row, and adds to its diagonal.
     #[inline(always)]
     fn eliminate(&mut self, lambda: f32, mu: f32, missed: &mut f32, diagonal: &mut f32) -> f32 {
-        let gap = self.unknown.eliminate(lambda * self.width - self.cost, 0.0, mu);
+        let gap = self.unknown.eliminate(lambda * self.width - self.cost, None, mu);
         *missed -= (self.unknown.low + self.unknown.step) * self.width;
         *diagonal += self.unknown.response * self.width * self.width;
         gap

@@ -44,18 +44,23 @@ impl Unknown {
         }
     }
 
-    /// Finds `step` and `response` for a gain and a curvature >= 0. Returns the gap: what the gain is worth
+    /// Finds `step` and `response` for a gain and a curvature >= 0, if any. Returns the gap: what the gain is worth
     /// over the distance from the bound that it leads to.
     #[inline(always)]
-    pub(super) fn eliminate(&mut self, gain: f32, curvature: f32, mu: f32) -> f32 {
+    pub(super) fn eliminate(&mut self, gain: f32, curvature: Option<f32>, mu: f32) -> f32 {
         let (low, high) = (self.low, self.high);
         let product = low * high;
         // The distance from the bound that the gain leads away from, and the one ahead.
         let (behind, ahead) = if gain > 0.0 { (low, high) } else { (high, low) };
-        let bent = curvature * ahead * ahead;
         let gap = ahead * gain.abs();
-        let left = larger(gap - bent, mu);
-        let scale = divided(product, behind * behind * (left + bent) + mu * ahead * ahead);
+        let left = match curvature {
+            Some(curvature) => {
+                let bent = curvature * ahead * ahead;
+                larger(gap - bent, mu) + bent
+            }
+            None => larger(gap, mu),
+        };
+        let scale = divided(product, behind * behind * left + mu * ahead * ahead);
         self.response = product * scale;
         self.step = (gain * product + mu * (high - low)) * scale;
         gap

@@ -8,7 +8,7 @@ use mixer_tests::frames;
 use mixer_tests::soak::jumps::{CLASSES, FRAMES, Jumps};
 
 /// Draws frames class by class and goes along lines of requests. A table: steps of a throttle by more than 0.02 for 1e-4 of the
-/// request in 10,000 pairs, the largest, and of how many.
+/// request in 10,000 pairs, how many of them jump and are not just steep, the largest, and of how many.
 #[derive(Parser)]
 struct Arguments {
     /// Of frames and lines
@@ -31,8 +31,8 @@ fn main() -> ExitCode {
             return ExitCode::FAILURE;
         }
     };
-    println!("| class | in 10,000 | most | steps |");
-    println!("|---|---:|---:|---:|");
+    println!("| class | steps in 10,000 | of them jumps | most | steps |");
+    println!("|---|---:|---:|---:|---:|");
     for (class, index) in CLASSES.iter().zip(1..) {
         let mut random = Random::new(Random::new(arguments.seed).bits() ^ index);
         let mut jumps = Jumps::default();

@@ -25,6 +25,9 @@ const LEVEL: f64 = 0.4;
 /// A step that amplifies a controller's noise.
 const STEP: f32 = 0.02;
 
+/// Parts of the way between two requests by which a jump is told from a steep answer, which divides as the way does.
+const PARTS: u16 = 16;
+
 /// Frames of some kind, in some state of health.
 #[derive(Clone, Copy, Debug)]
 pub struct Class {
@@ -155,16 +158,13 @@ pub struct Jumps {
     pub pairs: usize,
     /// Steps beyond 0.02.
     pub steps: usize,
+    /// Those of them that jump: more than half of the step is in a sixteenth of the way.
+    pub jumps: usize,
     /// The largest.
     pub most: f32,
 }
 
 impl Jumps {
-    /// Steps among 10,000 pairs.
-    pub fn rate(&self) -> f64 {
-        1e4 * self.steps as f64 / self.pairs as f64
-    }
-
     /// Goes along a drawn line; tells each step to `seen`, with the requests before and after.
     pub fn follow(
         &mut self,
@@ -197,19 +197,33 @@ impl Jumps {
                 self.steps += usize::from(step > STEP);
                 self.most = self.most.max(step);
                 if step > STEP {
-                    seen(step, [last, request.wrench]);
+                    let way = [last, request.wrench];
+                    self.jumps += usize::from(largest_part(frame, &request, way) > 0.5 * step);
+                    seen(step, way);
                 }
             }
         }
     }
 }
 
+/// The largest step of a throttle in a part of the way from one wrench to the next.
+fn largest_part(frame: &Frame, request: &Request, [from, to]: [[f32; 4]; 2]) -> f32 {
+    let answer = |part: u16| {
+        let share = f32::from(part) / f32::from(PARTS);
+        let wrench = std::array::from_fn(|axis| from[axis] + share * (to[axis] - from[axis]));
+        Request { wrench, ..*request }.mix(frame)
+    };
+    let steps = (0..PARTS).filter_map(|part| Some(answer(part + 1).ok()?.change(&answer(part).ok()?)));
+    steps.fold(0.0, f32::max)
+}
+
 impl fmt::Display for Jumps {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
-            "{:.2} | {:.3} | {} of {}",
-            self.rate(),
+            "{:.2} | {:.2} | {:.3} | {} of {}",
+            1e4 * self.steps as f64 / self.pairs as f64,
+            1e4 * self.jumps as f64 / self.pairs as f64,
             self.most,
             self.steps,
             self.pairs

@@ -183,15 +183,16 @@ impl<'a> Visit<'a> {
         });
     }
 
-    /// Torques that grow at one thrust: a smaller answer stays attainable, so that one that gives less
-    /// is no optimum, and no programme is needed to see it.
+    /// Roll and pitch that grow at one thrust and one yaw: a smaller answer stays attainable, so that one that gives less
+    /// is no optimum, and no programme is needed to see it. Yaw must not grow with them: a reserve then comes before thrust
+    /// by more, and has its price in roll and pitch.
     fn grow(&mut self, frame: &Frame, request: &Request) -> Result<(), Error> {
         let [roll, pitch, ..] = request.asked();
         let size = (roll * roll + pitch * pitch).sqrt() * frame.size(0).min(frame.size(1));
         let mut best = (f64::NEG_INFINITY, *request);
         for step in 1..=STEPS {
             let mut larger = *request;
-            let torques = larger.wrench.iter_mut().take(3);
+            let torques = larger.wrench.iter_mut().take(2);
             torques.for_each(|torque| *torque *= f32::from(step) / f32::from(STEPS));
             let Some(answer) = self.answer(frame, &larger).filter(|_| size > 0.0) else {
                 return Ok(());

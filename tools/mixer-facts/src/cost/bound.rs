@@ -3,10 +3,10 @@
 //! In closed form that is least norm, an attempt at it next to the border, and one of two ways: the
 //! facets in several steps where they change the request, or the climb along the null space where
 //! they do not; after either the retreat, and what a reserve of yaw asks for. Else it is least norm and
-//! the iterations of the interior point method, which are a constant: a product of their number and the
+//! the iterations of the interior point method: a product of their largest number and the
 //! cost of one (`cargo counts`). The tests hold the sum to the counts of whole mixers.
 
-use mixer_rt::tables::{Facets, ITERATIONS, Outline};
+use mixer_rt::tables::{Facets, MOST_ITERATIONS, Outline};
 
 use mixer_compiler::Compiled;
 use mixer_compiler::airframe::Basis;
@@ -61,7 +61,7 @@ const ITERATION: u32 = 480;
 const ITERATION_UNIT: [u32; 2] = [355, 420];
 
 /// A slack of the request in all iterations: that of yaw beyond the request, with rotors out, and that of the reserve beside it.
-const SLACK: u32 = 2 * ITERATIONS * 60;
+const SLACK: u32 = MOST_ITERATIONS * 60;
 
 /// Least norm with rotors out beside that of whole units, and one unit in it that has a single rotor.
 const ROTORS_OUT: u32 = 1000;
@@ -92,7 +92,7 @@ fn least_norm(compiled: &Compiled) -> Option<u32> {
     Some(n * (compiled.evaluator.instructions(basis)? + forward(basis) + PER_UNIT))
 }
 
-/// The interior point method: its iterations, and as many more.
+/// The interior point method: all iterations.
 fn interior(compiled: &Compiled) -> u32 {
     let n = compiled.tables.units.len() as u32;
     let unit = ITERATION_UNIT[usize::from(!compiled.tables.is_vertical)];
@@ -102,7 +102,7 @@ fn interior(compiled: &Compiled) -> u32 {
         Basis::Cubic => 10,
         Basis::Quartic => 45,
     };
-    2 * ITERATIONS * (ITERATION + n * (unit + more)) + CUT + n * CUT_UNIT
+    MOST_ITERATIONS * (ITERATION + n * (unit + more)) + CUT + n * CUT_UNIT
 }
 
 /// Checks, and corrections of voltage and density where there are any.
