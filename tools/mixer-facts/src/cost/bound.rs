@@ -60,7 +60,7 @@ const CUT_UNIT: u32 = 115;
 const ITERATION: u32 = 480;
 const ITERATION_UNIT: [u32; 2] = [355, 420];
 
-/// A slack of the request in all iterations: that of yaw beyond the request, with rotors out, and that of the reserve beside it.
+/// A slack of the request in all iterations: that of a reserve, and that of yaw beyond the request with rotors out.
 const SLACK: u32 = MOST_ITERATIONS * 60;
 
 /// Least norm with rotors out beside that of whole units, and one unit in it that has a single rotor.
@@ -73,7 +73,7 @@ pub(super) fn bound(compiled: &Compiled) -> Option<u32> {
     match &compiled.tables.closed_form {
         Some(table) => closed_form(compiled, table),
         // Least norm of the request, and of level flight.
-        None => Some(2 * least_norm(compiled)? + per_mix(compiled) + interior(compiled)),
+        None => Some(2 * least_norm(compiled)? + per_mix(compiled) + interior(compiled, 0)),
     }
 }
 
@@ -81,8 +81,7 @@ pub(super) fn bound(compiled: &Compiled) -> Option<u32> {
 pub(super) fn with_rotors_out(compiled: &Compiled) -> Option<u32> {
     let n = compiled.tables.units.len() as u32;
     let least_norm = least_norm(compiled)? + ROTORS_OUT + n * ROTORS_OUT_UNIT;
-    let slacks = 1 + u32::from(compiled.tables.priorities.yaw_reserve_nm > 0.0);
-    Some(least_norm + per_mix(compiled) + interior(compiled) + slacks * SLACK)
+    Some(least_norm + per_mix(compiled) + interior(compiled, 1))
 }
 
 /// Least norm of all units.
@@ -92,8 +91,8 @@ fn least_norm(compiled: &Compiled) -> Option<u32> {
     Some(n * (compiled.evaluator.instructions(basis)? + forward(basis) + PER_UNIT))
 }
 
-/// The interior point method: all iterations.
-fn interior(compiled: &Compiled) -> u32 {
+/// The interior point method: all iterations, with so many slacks beside that of a reserve.
+fn interior(compiled: &Compiled, slacks: u32) -> u32 {
     let n = compiled.tables.units.len() as u32;
     let unit = ITERATION_UNIT[usize::from(!compiled.tables.is_vertical)];
     // Additional instructions for the derivatives of the basis.
@@ -102,7 +101,8 @@ fn interior(compiled: &Compiled) -> u32 {
         Basis::Cubic => 10,
         Basis::Quartic => 45,
     };
-    MOST_ITERATIONS * (ITERATION + n * (unit + more)) + CUT + n * CUT_UNIT
+    let slacks = slacks + u32::from(compiled.tables.priorities.yaw_reserve_nm > 0.0);
+    MOST_ITERATIONS * (ITERATION + n * (unit + more)) + slacks * SLACK + CUT + n * CUT_UNIT
 }
 
 /// Checks, and corrections of voltage and density where there are any.
