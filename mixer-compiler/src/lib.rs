@@ -21,6 +21,7 @@ mod plausible;
 pub mod power;
 mod probe;
 mod proof;
+pub mod quantity;
 mod scale;
 mod selection;
 pub mod spec;

@@ -5,6 +5,7 @@ mod law;
 
 pub use self::law::{Correction, Law};
 use crate::diagnostic::{Code, Diagnostic, any_of, number, rounded};
+use crate::quantity::{self, Quantity};
 use crate::spec::keys::{self, Key, Kind, keys};
 use crate::spec::{Fields, Point, Spanned};
 
@@ -21,9 +22,6 @@ const LARGEST_OF_VOLTAGE: f64 = 4.0;
 
 /// Steepest power of the density that is taken for a law. A controller that holds a speed has 1.
 const LARGEST_OF_DENSITY: f64 = 1.5;
-
-/// Least voltage, V, and density, kg/m3: below, nothing turns, or nothing flies.
-const LEAST: f64 = 0.1;
 
 /// Least distance of two values over the higher one, of the range's ends and of neighbouring
 /// points: in single precision their difference is then true to a thousandth.
@@ -76,35 +74,24 @@ keys! { AIR_TABLE = "[air]":
 struct Measured {
     reference: &'static Key,
     range: &'static Key,
-    name: &'static str,
-    unit: &'static str,
-    largest: f64,
+    of: Quantity,
     /// Advice for a range that cannot be.
     ends: &'static str,
-    /// Advice for a value beyond the largest.
-    meant: fn(f64) -> String,
 }
 
 const VOLTAGE: Measured = Measured {
     reference: &REFERENCE_V,
     range: &RANGE_V,
-    name: "voltage",
-    unit: "V",
-    largest: 1000.0,
+    of: quantity::VOLTAGE,
     ends: "write the pack's voltage under load when empty, then when full",
-    meant: |x| format!("if millivolts were meant, write {} V", number(x / 1000.0)),
 };
 
 const AIR: Measured = Measured {
     reference: &REFERENCE_DENSITY,
     range: &RANGE_DENSITY,
-    name: "density",
-    unit: "kg/m3",
-    largest: 2.0,
-    ends: "write the density at the highest place in the warmest air, then at the lowest in the coldest",
-    meant: |_| {
-        "density is pressure in Pa / (287.05 x temperature in K), about 1.2 kg/m3 at sea level".to_owned()
-    },
+    of: quantity::DENSITY,
+    ends: "write the density at the highest place in the warmest air, then at the lowest in the coldest: pressure in Pa / (287.05 x \
+           temperature in K), about 1.2 kg/m3 at sea level",
 };
 
 /// Reference and range once they are sound, with their unit.
@@ -180,13 +167,7 @@ fn following(table: &mut Fields<'_, '_>, key: &'static Key, exponent: f64) -> Op
 }
 
 fn span(table: &mut Fields<'_, '_>, of: &Measured) -> Option<Span> {
-    let Measured {
-        name,
-        unit,
-        largest,
-        ends,
-        ..
-    } = of;
+    let (Quantity { name, unit, .. }, ends) = (&of.of, of.ends);
     let reference = table.read::<f64>(of.reference);
     let [low, high]: [f64; 2] = table.array(of.range)?;
     let [low_x, high_x] = [low, high].map(number);
@@ -194,25 +175,20 @@ fn span(table: &mut Fields<'_, '_>, of: &Measured) -> Option<Span> {
     let mut refuse = |message, label: String, help: String| {
         table.refuse::<Span>(of.range, Code::ConditionRange, message, label, help)
     };
-    if low < LEAST || low >= high {
-        let message = format!(
-            "the {name} range from {low_x} {unit} to {high_x} {unit} is empty or goes below {LEAST} {unit}"
-        );
-        return refuse(
-            message,
-            "expected [lowest, highest]".to_owned(),
-            (*ends).to_owned(),
-        );
+    if let Some(told) = [low, high].into_iter().find_map(|x| of.of.check(x).err()) {
+        let message = format!("a {name} of {told}");
+        return refuse(message, format!("expected {unit}"), ends.to_owned());
+    }
+    if low >= high {
+        let message = format!("the {name} range from {low_x} {unit} to {high_x} {unit} is empty");
+        let label = "expected [lowest, highest]".to_owned();
+        return refuse(message, label, ends.to_owned());
     }
     if high - low < LEAST_STEP * high {
         let [wide, least] = [high - low, LEAST_STEP * high].map(rounded);
         let message = format!("the {name} range up to {high_x} {unit} is {wide} {unit} wide");
         let help = format!("{ends}, or leave `[{header}]` out");
         return refuse(message, format!("expected {least} {unit} at least"), help);
-    }
-    if high > *largest {
-        let message = format!("a {name} of {high_x} {unit} is beyond {largest} {unit}");
-        return refuse(message, format!("expected {unit}"), (of.meant)(high));
     }
     let reference = *reference?.get_ref();
     if !(low..=high).contains(&reference) {

@@ -2,10 +2,10 @@
 
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use mixer_compiler::quantity::{self, Quantity};
 use mixer_identify::bench::Preparation;
 use mixer_identify::bench::air;
 use mixer_identify::bench::header::{ByHand, ROLES, unknown_role};
-use mixer_identify::bench::quantity;
 use mixer_identify::bench::read::Reading;
 use mixer_identify::bench::sign::{SignChoice, SignPolicy};
 use mixer_identify::fit::basis::ThrottleBox;
@@ -34,8 +34,8 @@ pub(crate) fn quantity(text: &str, units: &str) -> Result<f64, String> {
 }
 
 /// A parser of a value that this quantity has on benches.
-pub(crate) fn of(name: &'static str) -> impl Fn(&str) -> Result<f64, String> + Clone + Send + Sync {
-    move |text| quantity::quantity(name, finite(text)?)
+pub(crate) fn of(quantity: Quantity) -> impl Fn(&str) -> Result<f64, String> + Clone + Send + Sync {
+    move |text| quantity.check(finite(text)?)
 }
 
 /// Largest exponent that is taken: a propeller has 2.5 at most.
@@ -114,7 +114,7 @@ pub struct ReadingArgs {
     pub pwm_range: Option<[f64; 2]>,
     /// The speed controllers hold a speed: the speed at full throttle, revolutions per minute.
     /// Where a file has columns of speeds, throttle is these over it.
-    #[arg(long, value_name = "RPM", value_parser = of("speed"))]
+    #[arg(long, value_name = "RPM", value_parser = of(quantity::SPEED))]
     pub rpm_at_full: Option<f64>,
     /// A column by hand, as upper="ESC A" or lower=#5 (number from 1). Roles: upper, lower, thrust,
     /// torque, upper_thrust, lower_thrust, upper_torque, lower_torque, voltage, lower_voltage,
@@ -231,13 +231,13 @@ pub fn said(error: &clap::Error) -> String {
 pub struct AirArgs {
     /// Temperature of the air at the bench, degrees Celsius: with --pressure it gives `[air]`, in
     /// place of columns of both or of the density.
-    #[arg(long, value_name = "C", value_parser = of("temperature"), requires = "pressure", allow_negative_numbers = true)]
+    #[arg(long, value_name = "C", value_parser = of(quantity::TEMPERATURE), requires = "pressure", allow_negative_numbers = true)]
     pub temperature: Option<f64>,
     /// Pressure at the place of the bench, hPa, not that reduced to sea level.
-    #[arg(long, value_name = "HPA", value_parser = of("pressure"), requires = "temperature")]
+    #[arg(long, value_name = "HPA", value_parser = of(quantity::PRESSURE), requires = "temperature")]
     pub pressure: Option<f64>,
     /// Density of the air at the bench, kg/m3, in place of both.
-    #[arg(long, value_name = "KG_M3", value_parser = of("density"), conflicts_with = "temperature")]
+    #[arg(long, value_name = "KG_M3", value_parser = of(quantity::DENSITY), conflicts_with = "temperature")]
     pub density: Option<f64>,
 }
 

@@ -147,8 +147,10 @@ fn of_parameters(file: &Source, arm_m: Option<f64>) -> Result<Imported, String> 
         ));
     };
     if arm_m.is_some() && parameters.has("CA_ROTOR_COUNT") {
-        let told = "--arm has nothing to work on: the file has the place of each rotor (CA_ROTOR0_PX ..)";
-        imported.notes.push(told.into());
+        return Err(format!(
+            "{}: --arm has nothing to work on: the file has the place of each rotor (CA_ROTOR0_PX ..); leave it out",
+            file.name
+        ));
     }
     imported.notes.extend(outputs::order(&parameters));
     let pulses = outputs::own_pulses(&parameters);

@@ -7,6 +7,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::PI;
 
+use mixer_compiler::quantity;
 use serde::Serialize;
 
 use self::air::BenchAir;
@@ -22,7 +23,6 @@ pub mod air;
 pub mod header;
 pub mod number;
 pub mod plateau;
-pub mod quantity;
 pub mod read;
 pub mod sheet;
 pub mod sign;
@@ -434,9 +434,9 @@ fn by_columns(name: &str, rows: &[[f64; 3]]) -> Result<Option<BenchAir>, Refusal
     let [kelvin, pascal, density_kg_m3] = [0, 1, 2].map(|k| mean_of_finite(column(k)));
     let [coldest, warmest] = extent(column(0));
     let values = [
-        ("temperature", kelvin - 273.15),
-        ("pressure", 0.01 * pascal),
-        ("density", density_kg_m3),
+        (quantity::TEMPERATURE, kelvin - 273.15),
+        (quantity::PRESSURE, 0.01 * pascal),
+        (quantity::DENSITY, density_kg_m3),
     ];
     let fault = match warmest - coldest > AIR_WARMS_K {
         true => Some(format!(
@@ -447,8 +447,8 @@ fn by_columns(name: &str, rows: &[[f64; 3]]) -> Result<Option<BenchAir>, Refusal
             .into_iter()
             .filter(|(_, x)| x.is_finite())
             .find_map(|(of, x)| {
-                let told = quantity::quantity(of, (1e3 * x).round() / 1e3).err()?;
-                Some(format!("{of}: {told}"))
+                let told = of.check((1e3 * x).round() / 1e3).err()?;
+                Some(format!("{}: {told}", of.name))
             }),
     };
     let from = format!("columns of {name}");

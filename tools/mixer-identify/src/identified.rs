@@ -127,7 +127,10 @@ pub fn with_runs(
         warnings.push("single-rotor files serve the voltage exponents only, not the pair's map".into());
     }
     if wishes.pack_v.is_some() && exponents.is_none() && !wishes.closed_loop {
-        warnings.push("--cells has nothing to work on without an exponent: --voltage-exponent 1.75 beside it writes [voltage]".into());
+        return Err(Refusal::general(
+            "--cells has nothing to work on without an exponent of the voltage",
+            "--voltage-exponent 1.75 beside it, which writes [voltage], or no --cells",
+        ));
     }
     let reference_v = reference(pair.as_ref(), voltage.as_ref(), wishes.reference_v, &mut warnings)?;
     in_pack(reference_v, wishes.pack_v)?;

@@ -235,7 +235,7 @@ async function build({ files, form }) {
       // What is said of an option stands at its field.
       const option = fault.message.match(/'?--([\w-]+)/)?.[1];
       const field = error.field || (option in NUMBERS || TEXTS.includes(option) ? option : "");
-      if (field) built.refusals[field] = fault.message.replace(/^invalid value '.*?' for '--[^']*': /, "");
+      if (field) built.refusals[field] = [fault.message.replace(/^invalid value '.*?' for '--[^']*': /, ""), fault.help].filter(Boolean).join("; ");
       else built.faults.push({ severity: "error", ...fault });
     }
     Object.assign(built, { commands: [], airframe: null });

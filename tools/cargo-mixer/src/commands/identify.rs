@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use mixer_compiler::airframe::Basis;
+use mixer_compiler::quantity;
 use mixer_identify::bench::Preparation;
 use mixer_identify::bench::read::refused_told;
 use mixer_identify::fit::basis::ThrottleBox;
@@ -51,7 +52,7 @@ pub struct IdentifyArgs {
     #[command(flatten)]
     pub reading: ReadingArgs,
     /// Reference voltage, V [default: mean of the rows].
-    #[arg(long, value_name = "VOLT", value_parser = of("voltage"))]
+    #[arg(long, value_name = "VOLT", value_parser = of(quantity::VOLTAGE))]
     pub reference_voltage: Option<f64>,
     /// A run of the upper rotor alone, the lower one at rest: `[pair.lower_out]`, for when the
     /// lower rotor is out.

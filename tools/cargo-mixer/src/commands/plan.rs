@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use mixer_compiler::quantity;
 use mixer_identify::bench::STOP_THROTTLE;
 use mixer_identify::plan::{CORRECTING, plan, template, with_rests};
 
@@ -28,7 +29,7 @@ pub struct PlanArgs {
     max: f64,
     /// The speed controllers hold a speed: the speed at full throttle, revolutions per minute; the
     /// file then has speeds to command
-    #[arg(long, value_name = "RPM", value_parser = crate::bench_args::of("speed"))]
+    #[arg(long, value_name = "RPM", value_parser = crate::bench_args::of(quantity::SPEED))]
     rpm_at_full: Option<f64>,
     /// The file to write, whole or not at all [default: standard output]
     #[arg(short, long, value_name = "FILE")]

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use mixer_compiler::airframe::TYPICAL_EXPONENT;
+use mixer_compiler::quantity;
 use mixer_identify::bench::Preparation;
 use mixer_identify::bench::air::BenchAir;
 use mixer_identify::bench::header::ByHand;
@@ -40,7 +41,7 @@ pub struct PredictArgs {
     #[command(flatten)]
     pub reading: ReadingArgs,
     /// Bring the rows of the run to this voltage, V [default: their mean].
-    #[arg(long, value_name = "VOLT", value_parser = of("voltage"))]
+    #[arg(long, value_name = "VOLT", value_parser = of(quantity::VOLTAGE))]
     pub reference_voltage: Option<f64>,
     /// Exponent of thrust and of torque in (V / reference)^k, or one for both [default: 1.75, the
     /// median of 104 motors with propellers].
@@ -67,19 +68,19 @@ pub struct RotorArgs {
     #[arg(long, value_name = "RUN.csv")]
     pub lower_single: Option<PathBuf>,
     /// Distance of the rotors over their diameter, z/D [default: 0.25].
-    #[arg(long, value_name = "RATIO", value_parser = of("spacing over diameter"), conflicts_with = "spacing")]
+    #[arg(long, value_name = "RATIO", value_parser = of(quantity::SPACING_RATIO), conflicts_with = "spacing")]
     pub spacing_ratio: Option<f64>,
     /// Distance of the rotors, m.
-    #[arg(long, value_name = "METRE", value_parser = of("spacing"), requires = "diameter")]
+    #[arg(long, value_name = "METRE", value_parser = of(quantity::SPACING), requires = "diameter")]
     pub spacing: Option<f64>,
     /// Diameter of the propeller, m.
-    #[arg(long, value_name = "METRE", value_parser = of("diameter"))]
+    #[arg(long, value_name = "METRE", value_parser = of(quantity::DIAMETER))]
     pub diameter: Option<f64>,
     /// Torque per thrust, m, for a run without torque [default: 0.048 of the diameter].
-    #[arg(long, value_name = "METRE", value_parser = of("torque per thrust"))]
+    #[arg(long, value_name = "METRE", value_parser = of(quantity::TORQUE_PER_THRUST))]
     pub kappa: Option<f64>,
     /// Voltage of the run, V, where it has no column for it.
-    #[arg(long, value_name = "VOLT", value_parser = of("voltage"))]
+    #[arg(long, value_name = "VOLT", value_parser = of(quantity::VOLTAGE))]
     pub run_voltage: Option<f64>,
 }
 

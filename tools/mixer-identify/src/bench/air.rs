@@ -2,9 +2,8 @@
 //! have.
 
 use mixer_compiler::atmosphere::density;
+use mixer_compiler::quantity::{PRESSURE, TEMPERATURE};
 use serde::Serialize;
-
-use crate::bench::quantity::quantity;
 
 /// A density, and where it comes from.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -23,8 +22,8 @@ impl BenchAir {
     pub fn of_weather(temperature_c: f64, pressure_hpa: f64) -> Result<BenchAir, String> {
         Ok(BenchAir {
             density_kg_m3: density(
-                100.0 * quantity("pressure", pressure_hpa)?,
-                quantity("temperature", temperature_c)? + 273.15,
+                100.0 * PRESSURE.check(pressure_hpa)?,
+                TEMPERATURE.check(temperature_c)? + 273.15,
             ),
             from: format!("{temperature_c} C and {pressure_hpa} hPa"),
         })
