@@ -52,6 +52,8 @@ pub struct Import {
     pub text: String,
     /// Assumptions, and settings that the parameters lack.
     pub notes: Vec<String>,
+    /// Whether the parameters have the place of each rotor, so that no arm counts.
+    pub has_places: bool,
 }
 
 /// Reads what [`import`] begins with.
@@ -87,6 +89,7 @@ pub fn stated(file: &Source) -> Result<Stated, String> {
 /// A file that does not describe coaxial pairs: file, line, and what would serve.
 pub fn import(file: &Source, pair: Option<&Source>, options: &Options<'_>) -> Result<Import, String> {
     let mut imported = read(file, options.arm_m)?;
+    let has_places = kind::of(&file.text) != Kind::Betaflight && Parameters::read(file)?.has("CA_ROTOR0_PX");
     let units = pairs::pair(&imported.rotors, options.upper)?;
     imported.notes.extend(unused::told(&imported.rotors, &units)?);
     let pair = pair
@@ -115,6 +118,7 @@ pub fn import(file: &Source, pair: Option<&Source>, options: &Options<'_>) -> Re
         .map_or_else(|| text::default_name(units.len()), str::to_owned);
     Ok(Import {
         text: text::airframe(&name, file, &imported, &tables),
+        has_places,
         notes: imported.notes,
     })
 }
@@ -146,12 +150,6 @@ fn of_parameters(file: &Source, arm_m: Option<f64>) -> Result<Imported, String> 
             parameters.count()
         ));
     };
-    if arm_m.is_some() && parameters.has("CA_ROTOR_COUNT") {
-        return Err(format!(
-            "{}: --arm has nothing to work on: the file has the place of each rotor (CA_ROTOR0_PX ..); leave it out",
-            file.name
-        ));
-    }
     imported.notes.extend(outputs::order(&parameters));
     let pulses = outputs::own_pulses(&parameters);
     for rotor in &mut imported.rotors {

@@ -12,7 +12,6 @@ use cargo_mixer::place::tables_or_airframe;
 use clap::{CommandFactory as _, Parser, ValueHint};
 use mixer_compiler::Source;
 use mixer_compiler::diagnostic::printable_lines;
-use mixer_files::import;
 use mixer_files::kind::File;
 use mixer_identify::bench::read;
 use mixer_identify::identified::Settings;
@@ -163,7 +162,7 @@ pub fn make(words: &[String], files: &Files) -> Result<Made, Vec<Fault>> {
             let source = |path| files.source(path).map_err(|fault| vec![fault]);
             let parameters = source(&args.file)?;
             let pair = args.pair.as_deref().map(source).transpose()?;
-            let made = import::import(&parameters, pair.as_ref(), &args.options()).map_err(general)?;
+            let made = args.answer(&parameters, pair.as_ref()).map_err(general)?;
             Ok(Made {
                 toml: made.text,
                 report: String::new(),

@@ -2,7 +2,8 @@
 
 use std::path::PathBuf;
 
-use mixer_files::import::{self, Options};
+use mixer_compiler::Source;
+use mixer_files::import::{self, Import, Options};
 
 use crate::bench_args::pwm_range;
 use crate::{Done, file};
@@ -57,13 +58,24 @@ pub fn run(args: &ImportArgs) -> Done {
 }
 
 impl ImportArgs {
-    /// The options of the import that the arguments state.
-    pub fn options(&self) -> Options<'_> {
-        Options {
+    /// The airframe of these parameters and this pair.
+    ///
+    /// # Errors
+    /// A file that does not describe coaxial pairs, and an arm beside places.
+    pub fn answer(&self, parameters: &Source, pair: Option<&Source>) -> Result<Import, String> {
+        let options = Options {
             arm_m: self.arm,
             upper: &self.upper,
             pulses_us: self.pwm_range,
             name: self.name.as_deref(),
+        };
+        let made = import::import(parameters, pair, &options)?;
+        match self.arm {
+            Some(_) if made.has_places => Err(format!(
+                "{}: --arm has nothing to work on: the file has the place of each rotor; leave it out",
+                parameters.name
+            )),
+            _ => Ok(made),
         }
     }
 }
@@ -71,7 +83,7 @@ impl ImportArgs {
 fn import(args: &ImportArgs) -> Result<(), String> {
     let parameters = file::source(&args.file)?;
     let pair = args.pair.as_deref().map(file::source).transpose()?;
-    let made = import::import(&parameters, pair.as_ref(), &args.options())?;
+    let made = args.answer(&parameters, pair.as_ref())?;
     file::save(&args.output, &made.text)?;
     crate::print_notes(&made.notes);
     Ok(())
