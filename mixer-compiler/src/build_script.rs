@@ -19,6 +19,7 @@ use crate::{Source, compile as compile_source, lint};
 
 /// Why no mixer was written.
 #[derive(Debug)]
+#[non_exhaustive]
 pub enum Error {
     /// The airframe file or the output cannot be read or written.
     File {
@@ -37,7 +38,7 @@ pub enum Error {
         airframes: [PathBuf; 2],
     },
     /// The airframe file is refused.
-    Airframe(crate::diagnostic::Diagnostics),
+    Airframe(crate::Diagnostics),
 }
 
 impl std::fmt::Display for Error {

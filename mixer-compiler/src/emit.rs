@@ -118,6 +118,7 @@ fn mixer_type(compiled: &Compiled) -> TokenStream {
         #[derive(Clone, Copy, Debug, Default)]
         pub struct #mixer;
 
+        impl rt::tables::Sealed for #mixer {}
         impl rt::Airframe for #mixer {
             const NAME: &'static str = #name;
             const UNITS: usize = UNITS;

@@ -3,33 +3,66 @@
 //! Text in, tables or diagnostics out; files, the environment and macros are the business of its
 //! three front ends: `mixer-macros`, [`build_script`] and `cargo mixer`. [`compile`] shows the
 //! pipeline.
+//!
+//! Versions keep their promise for what is public without the feature `unstable`. With it the project's own packages
+//! see the rest, which changes without notice.
+#![cfg_attr(not(feature = "unstable"), allow(dead_code, unused_imports))]
 
+#[cfg(not(feature = "unstable"))]
+mod airframe;
+#[cfg(feature = "unstable")]
 pub mod airframe;
 mod allocation;
+#[cfg(not(feature = "unstable"))]
+mod atmosphere;
+#[cfg(feature = "unstable")]
 pub mod atmosphere;
 mod bounds;
 #[cfg(feature = "format")]
 pub mod build_script;
 mod compiled;
+#[cfg(not(feature = "unstable"))]
+mod diagnostic;
+#[cfg(feature = "unstable")]
 pub mod diagnostic;
 mod emit;
+#[cfg(not(feature = "unstable"))]
+mod flywheel;
+#[cfg(feature = "unstable")]
 pub mod flywheel;
+#[cfg(not(feature = "unstable"))]
+mod hover;
+#[cfg(feature = "unstable")]
 pub mod hover;
 mod inverse;
+#[cfg(not(feature = "unstable"))]
+mod model;
+#[cfg(feature = "unstable")]
 pub mod model;
 mod plausible;
+#[cfg(not(feature = "unstable"))]
+mod power;
+#[cfg(feature = "unstable")]
 pub mod power;
 mod probe;
 mod proof;
+#[cfg(not(feature = "unstable"))]
+mod quantity;
+#[cfg(feature = "unstable")]
 pub mod quantity;
 mod scale;
 mod selection;
+#[cfg(not(feature = "unstable"))]
+mod spec;
+#[cfg(feature = "unstable")]
 pub mod spec;
+#[cfg(not(feature = "unstable"))]
+mod tables;
+#[cfg(feature = "unstable")]
 pub mod tables;
 
 use airframe::Airframe;
 use allocation::{closed_form, thrust_range};
-use diagnostic::{Diagnostic, Diagnostics};
 use model::PairMap;
 use model::effectiveness::Effectiveness;
 use model::injectivity::{self, Injectivity};
@@ -40,10 +73,13 @@ use tables::{MixerTables, Parts};
 
 pub use compiled::Compiled;
 pub use diagnostic::source::Source;
-pub use inverse::evaluator;
-pub use plausible::{ARDUPILOT_MOST_SPIN_MIN, symmetry};
-pub use proof::Certificate;
-pub use proof::residual::Residual;
+pub use diagnostic::{Code, Diagnostic, Diagnostics, Record, Severity};
+#[cfg(feature = "unstable")]
+pub use {
+    inverse::evaluator,
+    plausible::{ARDUPILOT_MOST_SPIN_MIN, symmetry},
+    proof::{Certificate, residual::Residual},
+};
 
 /// Compiles an airframe file: source -> airframe -> model (effectiveness, injectivity, corrections) ->
 /// proven inverse -> tables with the closed form -> range of thrust -> probes.

@@ -168,6 +168,7 @@ fn refusal(source: &Source, message: &str, span: Span) -> proc_macro2::TokenStre
             pub const BETAFLIGHT_SCALE: ::mixer_rt::Wrench = SCALE;
             pub const BETAFLIGHT_EXPO: f32 = 0.0;
             pub struct #mixer;
+            impl ::mixer_rt::tables::Sealed for #mixer {}
             impl ::mixer_rt::Airframe for #mixer {
                 const NAME: &'static str = "";
                 const UNITS: usize = UNITS;

@@ -45,12 +45,18 @@ pub use mix::{Airframe, Mix, Outputs};
 pub use saturation::{Direction, Saturation};
 pub use wrench::{Axis, SetpointError, Wrench};
 
-/// The text of this crate by path, for `cargo mixer library`, which compiles it for another target.
+/// Hands the path and the text of each file of this crate to `of`, for `cargo mixer library`, which compiles it for
+/// another target.
 #[doc(hidden)]
 #[cfg(feature = "sources")]
-pub static SOURCES: Sources = include_dir::include_dir!("$CARGO_MANIFEST_DIR/src");
-
-/// Type of [`SOURCES`].
-#[doc(hidden)]
-#[cfg(feature = "sources")]
-pub type Sources = include_dir::Dir<'static>;
+pub fn sources(of: &mut dyn FnMut(&'static str, &'static [u8])) {
+    type Folder = include_dir::Dir<'static>;
+    static SOURCES: Folder = include_dir::include_dir!("$CARGO_MANIFEST_DIR/src");
+    fn visit(folder: &'static Folder, of: &mut dyn FnMut(&'static str, &'static [u8])) {
+        for file in folder.files() {
+            of(file.path().to_str().unwrap_or_default(), file.contents());
+        }
+        folder.dirs().for_each(|folder| visit(folder, of));
+    }
+    visit(&SOURCES, of);
+}

@@ -25,6 +25,7 @@ use crate::{divided, rolled};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct Mix<const CHANNELS: usize> {
     /// Throttle per output channel, each within the airframe's range; 0 for a failed rotor.
     #[cfg_attr(feature = "serde", serde(with = "crate::array"))]
@@ -55,11 +56,9 @@ impl<const CHANNELS: usize> Mix<CHANNELS> {
     /// ```
     /// # use mixer_rt::{Mix, Saturation, Wrench};
     /// let setpoint = Wrench { roll_nm: 1.0, yaw_nm: 0.5, ..Wrench::default() };
-    /// let mix = Mix {
-    ///     throttle: [0.5; 8],
-    ///     achieved: Wrench { roll_nm: 0.9999, yaw_nm: 0.2, ..Wrench::default() },
-    ///     saturation: Saturation::from_bits(1 << 4),
-    /// };
+    /// let mut mix = Mix::<8>::default();
+    /// mix.achieved = Wrench { roll_nm: 0.9999, yaw_nm: 0.2, ..Wrench::default() };
+    /// mix.saturation = Saturation::from_bits(1 << 4);
     /// assert_eq!(mix.unallocated(&setpoint).to_array(), [0.0, 0.0, 0.3, 0.0]);
     /// ```
     #[inline]
@@ -303,7 +302,7 @@ fn is_within(given: [f32; 2], wanted: [f32; 2], tolerance: [f32; 2]) -> bool {
 /// }
 /// assert!(is_idle(&Mix::<8>::default()));
 /// ```
-pub trait Outputs {
+pub trait Outputs: Sealed {
     /// [`Mix::throttle`], one per channel.
     fn throttle(&self) -> &[f32];
     /// [`Mix::achieved`].
@@ -311,6 +310,8 @@ pub trait Outputs {
     /// [`Mix::saturation`].
     fn saturation(&self) -> Saturation;
 }
+
+impl<const CHANNELS: usize> Sealed for Mix<CHANNELS> {}
 
 impl<const CHANNELS: usize> Outputs for Mix<CHANNELS> {
     #[inline]
@@ -329,6 +330,9 @@ impl<const CHANNELS: usize> Outputs for Mix<CHANNELS> {
     }
 }
 
+/// Of types that this project makes alone, so that its traits can grow.
+pub trait Sealed {}
+
 /// An airframe's mixer as a type, for code that is generic over airframes. The compiler implements
 /// it.
 ///
@@ -339,7 +343,7 @@ impl<const CHANNELS: usize> Outputs for Mix<CHANNELS> {
 ///     Ok(mix.throttle().iter().copied().fold(0.0, f32::max))
 /// }
 /// ```
-pub trait Airframe {
+pub trait Airframe: Sealed {
     /// The name in the airframe file.
     const NAME: &'static str;
     /// Number of coaxial units.

@@ -16,7 +16,7 @@ use crate::Axis;
 /// assert_eq!(integrate(1.0, 0.5, Axis::Yaw, Saturation::from_bits(1 << 4)), 1.0);
 /// assert_eq!(integrate(1.0, -0.5, Axis::Yaw, Saturation::from_bits(1 << 4)), 0.5);
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
@@ -31,7 +31,7 @@ pub enum Direction {
 /// [`Direction::Negative`], with roll 0, pitch 1, yaw 2, thrust 3; bit 8 says that the voltage was
 /// clamped, bit 9 that the density was, or was not measured.
 // Of 32 bits, so that a mix consists of whole words; see `SetpointError`.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(from = "u16", into = "u16"))]
 pub struct Saturation(u32);

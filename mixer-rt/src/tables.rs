@@ -16,7 +16,7 @@ pub use crate::allocate::unit::UnitState;
 pub use crate::arithmetic::{Scalar, sqrt};
 pub use crate::conditions::{Law, LawPiece};
 pub use crate::layout::{Tables, Tolerance, Unit};
-pub use crate::mix::{mix, mix_into};
+pub use crate::mix::{Sealed, mix, mix_into};
 pub use crate::pair::{
     Biquadratic, Coefficients, Cubic, Inverse, Pair, PolynomialInverse, Quantity, Quartic, SingleRotor,
     ThrottleRange, solve,

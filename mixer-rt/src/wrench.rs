@@ -71,7 +71,7 @@ impl Wrench {
 /// let wrench = Wrench { yaw_nm: 0.3, ..Wrench::default() };
 /// assert_eq!(wrench.to_array()[Axis::Yaw as usize], 0.3);
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
@@ -124,7 +124,7 @@ impl fmt::Display for Axis {
 /// ```
 // Of whole words, as a mix is: copying a `Result` of other parts takes hundreds of instructions on
 // a Cortex-M.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]

@@ -172,7 +172,7 @@ fn requests_far_beyond_keep_their_direction() {
     }
 }
 
-/// Yaw takes no roll and pitch, nor does a reserve of yaw, which is kept as far as there was yaw without
+/// Yaw takes no roll and pitch, nor does a reserve of yaw, which keeps the yaw that there was without
 /// it: at most 2 % of the authority is lost.
 #[test]
 fn priorities_hold() {

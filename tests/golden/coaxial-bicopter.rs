@@ -62,6 +62,7 @@ pub mod coaxial_bicopter {
     /// The mixer of `coaxial-bicopter` as a type, for code that is generic over airframes.
     #[derive(Clone, Copy, Debug, Default)]
     pub struct CoaxialBicopter;
+    impl rt::tables::Sealed for CoaxialBicopter {}
     impl rt::Airframe for CoaxialBicopter {
         const NAME: &'static str = "coaxial-bicopter";
         const UNITS: usize = UNITS;

@@ -64,6 +64,7 @@ pub mod isae_x8 {
     /// The mixer of `isae-x8` as a type, for code that is generic over airframes.
     #[derive(Clone, Copy, Debug, Default)]
     pub struct IsaeX8;
+    impl rt::tables::Sealed for IsaeX8 {}
     impl rt::Airframe for IsaeX8 {
         const NAME: &'static str = "isae-x8";
         const UNITS: usize = UNITS;

@@ -66,6 +66,7 @@ pub mod px4_x12 {
     /// The mixer of `px4-x12` as a type, for code that is generic over airframes.
     #[derive(Clone, Copy, Debug, Default)]
     pub struct Px4X12;
+    impl rt::tables::Sealed for Px4X12 {}
     impl rt::Airframe for Px4X12 {
         const NAME: &'static str = "px4-x12";
         const UNITS: usize = UNITS;

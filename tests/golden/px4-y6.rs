@@ -63,6 +63,7 @@ pub mod px4_y6 {
     /// The mixer of `px4-y6` as a type, for code that is generic over airframes.
     #[derive(Clone, Copy, Debug, Default)]
     pub struct Px4Y6;
+    impl rt::tables::Sealed for Px4Y6 {}
     impl rt::Airframe for Px4Y6 {
         const NAME: &'static str = "px4-y6";
         const UNITS: usize = UNITS;

@@ -61,6 +61,7 @@ pub mod single_pair {
     /// The mixer of `single-pair` as a type, for code that is generic over airframes.
     #[derive(Clone, Copy, Debug, Default)]
     pub struct SinglePair;
+    impl rt::tables::Sealed for SinglePair {}
     impl rt::Airframe for SinglePair {
         const NAME: &'static str = "single-pair";
         const UNITS: usize = UNITS;

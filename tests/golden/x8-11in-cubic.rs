@@ -64,6 +64,7 @@ pub mod x8_11in_cubic {
     /// The mixer of `x8-11in-cubic` as a type, for code that is generic over airframes.
     #[derive(Clone, Copy, Debug, Default)]
     pub struct X8_11inCubic;
+    impl rt::tables::Sealed for X8_11inCubic {}
     impl rt::Airframe for X8_11inCubic {
         const NAME: &'static str = "x8-11in-cubic";
         const UNITS: usize = UNITS;

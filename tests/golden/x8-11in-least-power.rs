@@ -64,6 +64,7 @@ pub mod x8_11in_least_power {
     /// The mixer of `x8-11in-least-power` as a type, for code that is generic over airframes.
     #[derive(Clone, Copy, Debug, Default)]
     pub struct X8_11inLeastPower;
+    impl rt::tables::Sealed for X8_11inLeastPower {}
     impl rt::Airframe for X8_11inLeastPower {
         const NAME: &'static str = "x8-11in-least-power";
         const UNITS: usize = UNITS;

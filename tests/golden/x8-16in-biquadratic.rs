@@ -64,6 +64,7 @@ pub mod x8_16in_biquadratic {
     /// The mixer of `x8-16in-biquadratic` as a type, for code that is generic over airframes.
     #[derive(Clone, Copy, Debug, Default)]
     pub struct X8_16inBiquadratic;
+    impl rt::tables::Sealed for X8_16inBiquadratic {}
     impl rt::Airframe for X8_16inBiquadratic {
         const NAME: &'static str = "x8-16in-biquadratic";
         const UNITS: usize = UNITS;

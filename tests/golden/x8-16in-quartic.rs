@@ -64,6 +64,7 @@ pub mod x8_16in_quartic {
     /// The mixer of `x8-16in-quartic` as a type, for code that is generic over airframes.
     #[derive(Clone, Copy, Debug, Default)]
     pub struct X8_16inQuartic;
+    impl rt::tables::Sealed for X8_16inQuartic {}
     impl rt::Airframe for X8_16inQuartic {
         const NAME: &'static str = "x8-16in-quartic";
         const UNITS: usize = UNITS;

@@ -61,11 +61,10 @@ fn saturation_is_its_bits() {
 /// What a mixer takes and gives, for a log of flights.
 #[test]
 fn mixes_and_conditions_come_back() {
-    let mix = Mix {
-        throttle: std::array::from_fn::<f32, 40, _>(|channel| channel as f32 / 40.0),
-        achieved: Wrench::from_array([0.1, 0.2, 0.3, 31.4]),
-        saturation: Saturation::from_bits(1 << 4),
-    };
+    let mut mix = Mix::<40>::default();
+    mix.throttle = std::array::from_fn(|channel| channel as f32 / 40.0);
+    mix.achieved = Wrench::from_array([0.1, 0.2, 0.3, 31.4]);
+    mix.saturation = Saturation::from_bits(1 << 4);
     let text = to_string(&mix).expect("JSON");
     assert_eq!(from_str::<Mix<40>>(&text).expect("a mix"), mix);
     let shorter = from_str::<Mix<41>>(&text).expect_err("another number of rotors");

@@ -58,7 +58,7 @@ impl Unit {
     }
 }
 
-/// A unit as far as it could be read, or as a layout stands for it.
+/// The parts of a unit that could be read, or that a layout stands for.
 pub(super) struct Written {
     pub(super) position_m: Option<[f64; 3]>,
     pub(super) axis: Option<[f64; 3]>,

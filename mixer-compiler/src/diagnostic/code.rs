@@ -32,6 +32,7 @@ macro_rules! catalogue {
 
 /// What a diagnostic means for the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[non_exhaustive]
 pub enum Severity {
     /// The file is refused.
     Error,

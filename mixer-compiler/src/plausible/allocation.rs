@@ -9,7 +9,7 @@ use crate::model::effectiveness::Effectiveness;
 /// nothing to cancel torques with.
 const NO_SHARE: f64 = 1e-6;
 
-/// Where every unit yaws as far as it can to one side: the yaw to that side, N m, and the thrust, N.
+/// Where every unit gives its greatest yaw to one side: that yaw, N m, and the thrust, N.
 fn furthest(facts: &Facts<'_>, effectiveness: &Effectiveness, sign: f64) -> [f64; 2] {
     let units = facts.airframe.units.len();
     let give = |unit: usize, [f, q]: &[f64; 2]| {

@@ -3,7 +3,7 @@
 //! Let t* run through the cell and e = F(t*) be its efforts. The runtime computes throttles t near
 //! t*; d = t - t* is its deviation, R = F(t) - F(t*) its residual. The first guess is evaluated
 //! over Taylor models, which gives d with its rounding error. A Newton step solves J s = m, m = e -
-//! F(t) as far as rounding allows: J s = m + r with r bounded below. By Taylor's formula, without any
+//! F(t), with rounding errors: J s = m + r with r bounded below. By Taylor's formula, without any
 //! approximation:
 //!
 //! ```text

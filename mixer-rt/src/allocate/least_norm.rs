@@ -48,7 +48,7 @@ impl<P: Quantity, I: Inverse, S, const VERTICAL: bool> Frame<'_, '_, P, I, S, VE
     }
 
     /// The guard for whole frames, where the interior point method has not met the rows: least norm for
-    /// level flight at the thrust asked, as far as there is one. It is sound whatever the sets, for it is
+    /// level flight at the attainable thrust nearest the one asked. It is sound whatever the sets, for it is
     /// delivered. Where a frame has no level flight by least norm, the method's answer stays.
     #[inline(never)]
     pub(super) fn level(&self, thrust: f32, units: &mut [UnitState]) {

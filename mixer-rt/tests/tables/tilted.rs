@@ -54,6 +54,7 @@ pub mod tilted {
     /// The mixer of `tilted` as a type, for code that is generic over airframes.
     #[derive(Clone, Copy, Debug, Default)]
     pub struct Tilted;
+    impl rt::tables::Sealed for Tilted {}
     impl rt::Airframe for Tilted {
         const NAME: &'static str = "tilted";
         const UNITS: usize = UNITS;

@@ -180,8 +180,8 @@ pub struct Preparation {
     pub signs: SignPolicy,
     /// Whether what the load cells read at rest is taken off.
     pub tare: bool,
-    /// Whether these few rows of a pair correct a prediction: they may lack their torque, and one throttle
-    /// is that of both rotors.
+    /// Whether these few rows of a pair correct a prediction: torque may be missing, and a single throttle
+    /// column drives both rotors.
     pub is_correction: bool,
     /// Whether a run of one rotor is of that rotor, not of the whole: what it drives through the
     /// one at rest, which has a drag, is then left aside.

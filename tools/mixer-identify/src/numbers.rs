@@ -77,12 +77,12 @@ impl Told {
 /// Standard errors by which a value must be outside.
 const SURE: f64 = 4.0;
 const NEVER: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
-const TORQUE_AT_LOWEST: &str = "torque at the lowest equal throttles, beyond what the thrust there explains, over the \
-                                           greatest";
+const TORQUE_AT_LOWEST: &str =
+    "torque at the lowest throttle, beyond what the thrust there explains, over the greatest";
 const LOWER_OVER_UPPER: &str =
     "thrust of the lower rotor over the upper one's at equal throttles, per torque where it is known";
-const LOWEST: &str = "thrust at the lowest equal throttles over the greatest";
-const GROWS: &str = "power of the throttle with which thrust grows from middle to highest equal throttles";
+const LOWEST: &str = "thrust at the lowest throttle over the greatest";
+const GROWS: &str = "power of the throttle with which thrust grows from middle to highest throttle";
 
 const ONE_ROTOR: Outside = [
     "a unit is wrong, the diameter, or this is no run of ONE rotor",
@@ -179,7 +179,7 @@ const SHAPE: [Number; 6] = [
         |run| run.lowest(), [
             "rotors may stand still there, or the load cells read something at rest",
             "without the rows below IDLE, where both turn; else set the load cells to zero at rest"]),
-    number("power of the throttle with which thrust grows from lowest to highest equal throttles", [1.45, 2.15], NEVER,
+    number("power of the throttle with which thrust grows from lowest to highest throttle", [1.45, 2.15], NEVER,
         |run| run.lowest().and_then(|_| run.growth([0.0, 1.0], TYPICAL_EXPONENT)), [
             "the load cells read something at rest; or the throttle is of another range of pulses",
             ZERO[1]]),
@@ -233,7 +233,7 @@ pub struct Run<'a> {
     bench: &'a Bench,
     points: &'a [Point],
     diameter_m: Option<f64>,
-    /// Rows of a pair with equal throttles, in their order.
+    /// Rows of one rotor, or of a pair with equal throttles, by their throttle.
     equal: Vec<(f64, &'a Point)>,
 }
 
@@ -246,8 +246,15 @@ impl<'a> Run<'a> {
         let near = bench
             .points
             .iter()
-            .filter(|p| bench.kind == Kind::Pair && (p.u - p.l).abs() < EQUAL);
-        let mut equal: Vec<(f64, &Point)> = near.map(|p| (0.5 * (p.u + p.l), p)).collect();
+            .filter(|p| bench.kind == Kind::SingleRotor || (p.u - p.l).abs() < EQUAL);
+        let throttle = |p: &Point| {
+            if bench.kind == Kind::Pair {
+                0.5 * (p.u + p.l)
+            } else {
+                p.u
+            }
+        };
+        let mut equal: Vec<(f64, &Point)> = near.map(|p| (throttle(p), p)).collect();
         equal.sort_by(|a, b| a.0.total_cmp(&b.0));
         Run {
             bench,
@@ -345,7 +352,7 @@ impl<'a> Run<'a> {
 
     /// The share of the greatest thrust at the lowest equal throttles of a map over the whole range.
     fn lowest(&self) -> Option<[f64; 2]> {
-        let [(low, at), (high, _)] = [self.equal.first()?, self.equal.last()?];
+        let [(low, at), (high, _)] = [self.pair()?.equal.first()?, self.equal.last()?];
         exact(at.thrust / self.most(|p| p.thrust)).filter(|_| *low <= 0.15 && *high >= 0.5)
     }
 }

@@ -273,8 +273,19 @@ async function assemble(built, files, form) {
   built.command = bench?.[0] ?? (parameters ? "import" : form.arm ? "new" : "identify");
 
   const run_ = async (words, tables) => {
-    built.commands.push(["cargo mixer", ...words].map((word, k) => (k ? quoted(word) : word)).join(" "));
-    return ask("make", words, ...named([...built.files, ...(tables ? [tables] : [])]));
+    try {
+      const made = await ask("make", words, ...named([...built.files, ...(tables ? [tables] : [])]));
+      built.commands.push(["cargo mixer", ...words].map((word, k) => (k ? quoted(word) : word)).join(" "));
+      return made;
+    } catch (error) {
+      // A field without effect on these files is left out, which is said.
+      const unused = error instanceof Refused && error.faults.find(({ message }) => message.includes("has nothing to work on"));
+      const name = unused && unused.message.match(/--([\w-]+)/)[1];
+      if (!(name in NUMBERS) || !words.includes(`--${name}`)) throw error;
+      built.notes.push(unused);
+      const gone = [name, ...(name === "cells" ? ["chemistry"] : [])].map((name) => words.indexOf(`--${name}`)).filter((at) => at >= 0);
+      return run_(words.filter((_, k) => !gone.some((at) => k === at || k === at + 1)), tables);
+    }
   };
   const numbers = (command) => Object.keys(NUMBERS).filter((id) => NUMBERS[id].includes(command)).flatMap((id) => {
     const value = numberOf(id, form[id]);
@@ -285,7 +296,7 @@ async function assemble(built, files, form) {
     const [command] = bench, chemistry = form.cells && form.chemistry ? ["--chemistry", form.chemistry] : [];
     const answer = await run_([...bench, "-o", "pair.toml", ...numbers(command), ...chemistry, ...all[command]]);
     tables = { name: "pair.toml", text: answer.toml };
-    Object.assign(built, { pair: tables, report: answer.report, notes: answer.notes });
+    Object.assign(built, { pair: tables, report: answer.report, notes: [...built.notes, ...answer.notes] });
   }
   if (!isFramed) return;
   const { frame, name } = form, file = `${name || `my-${parameters ? "airframe" : frame}`}.toml`;

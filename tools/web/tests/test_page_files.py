@@ -40,7 +40,7 @@ def pair(desk):
         (lambda _: [BENCH], "cargo mixer identify sweep.csv", ["pair", "airframe"]),
         (lambda _: [ROTOR], "cargo mixer predict rotor.csv", ["pair", "airframe"]),
         (lambda _: [FEW, CASES / "rotor.csv"], "cargo mixer identify few.csv --prior rotor.csv", ["pair", "airframe"]),
-        (lambda desk: [parameters(desk), BENCH], "--pair pair.toml --arm 0.45", ["pair", "airframe"]),
+        (lambda desk: [parameters(desk), BENCH], "--pair pair.toml", ["pair", "airframe"]),
         (lambda desk: [pair(desk)], "cargo mixer new --frame x8 --pair tables.toml", ["airframe"]),
     ],
     ids=["bench", "run", "bench-and-run", "parameters", "pair"],
@@ -200,6 +200,19 @@ def test_an_airframe_can_be_typed(desk):
     desk.see("#editor textarea").press_sequentially(last)
     desk.compiles("isae-x8")
     assert desk.text() == head + "\n" + last
+
+
+def test_fields_without_effect_are_left_out_and_said(desk):
+    """An arm beside places, and cells beside rows of one voltage, whose mend is a button."""
+    desk.page.fill("#arm", "0.45")
+    desk.page.fill("#cells", "4")
+    desk.drop(parameters(desk), BENCH).compiles()
+    desk.shows("#faults .warning >> nth=0", "--cells has nothing to work on").shows("#faults", "--arm has nothing to work on")
+    command = desk.see("#command").inner_text()
+    assert "--arm" not in command and "--cells" not in command
+    desk.run_shown()
+    desk.page.get_by_role("button", name="--voltage-exponent 1.75").click()
+    desk.shows("#command", "--cells 4").compiles()
 
 
 def test_a_data_sheet_has_its_fields(desk):

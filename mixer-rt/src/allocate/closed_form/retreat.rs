@@ -1,7 +1,7 @@
 //! Thrust, roll and pitch given up for yaw: thrust for the reserve, all three for zero yaw.
 //!
 //! The thrusts found so far are drawn along straight lines towards others where yaw reaches further,
-//! as far as that is needed:
+//! no further than that needs:
 //!
 //! ```text
 //! reserve     to the thrusts of the same roll and pitch at the thrust nearest the middle
@@ -92,7 +92,7 @@ impl ClosedForm<'_> {
         (at, self.reach(lines, at))
     }
 
-    /// Goes along the lines from 0 towards 1, as far as yaw reaches `needed`, which it exceeds by
+    /// Goes along the lines from 0 towards 1 until yaw reaches `needed`, which it exceeds by
     /// `inside` at 0 and by `outside` at 1. Returns the place and the least and most yaw there;
     /// writes each unit's yaw.
     ///

@@ -47,7 +47,7 @@ impl<'a> Build<'a> {
             ));
             build.core(core)?;
         }
-        build.extract(&mixer_rt::SOURCES)?;
+        build.extract()?;
         let runtime = build.path().join("mixer-rt/lib.rs");
         build.compile("mixer_rt", &runtime, "rlib", &["link"])?;
         Ok(build)
@@ -90,10 +90,17 @@ impl<'a> Build<'a> {
     }
 
     /// Writes the runtime's sources.
-    fn extract(&self, sources: &mixer_rt::Sources) -> Result<(), String> {
+    fn extract(&self) -> Result<(), String> {
         let folder = self.path().join("mixer-rt");
-        fs::create_dir(&folder).map_err(|error| fault(&folder, &error))?;
-        sources.extract(&folder).map_err(|error| fault(&folder, &error))
+        let mut written = Ok(());
+        mixer_rt::sources(&mut |name, text| {
+            let path = folder.join(name);
+            let made = path.parent().map_or(Ok(()), fs::create_dir_all);
+            let made = made.and_then(|()| fs::write(&path, text));
+            let written_before = std::mem::replace(&mut written, Ok(()));
+            written = written_before.and(made.map_err(|error| fault(&path, &error)));
+        });
+        written
     }
 
     fn compile(&self, name: &str, source: &Path, kind: &str, emit: &[&str]) -> Result<(), String> {

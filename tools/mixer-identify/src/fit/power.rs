@@ -5,7 +5,7 @@
 //! power (voltage times current, of both rotors) is fitted as a quartic of both throttles with a
 //! constant, as standby takes some; along Q = c f the throttles follow from the pair's map, and c
 //! is the number with the greatest mean saving against Q = 0 over 0.3 to 0.7 of full thrust. A
-//! frame can cancel these torques as far as its upper rotors turn both ways: with spins s of n
+//! frame can cancel these torques where its upper rotors turn both ways: with spins s of n
 //! units the share of the saving that is left is 1 - (sum s / n)^2, none where all turn alike.
 
 use faer::Mat;

@@ -91,7 +91,7 @@ pub fn attitude(target: Target, thrust: f32, [system, component]: [u8; 2], time_
 /// Number of a battery's component.
 pub const BATTERY: u8 = 180;
 
-/// Cells of a pack by its voltage, as far as the message has place for them.
+/// Cells of a pack by its voltage, at most as many as the message holds.
 fn cells(volts: f64) -> usize {
     (volts / 4.25).ceil().clamp(1.0, 10.0) as usize
 }

@@ -42,7 +42,7 @@ const CLIMB_M_S: f64 = 2.0;
 pub struct Sticks {
     plan: Option<Plan>,
     phase: Phase,
-    /// Stick of the hover, as far as it is known, and its error.
+    /// The present estimate of the stick that hovers, and its error.
     hover: f64,
     trim: f64,
     /// When it last looked, s.

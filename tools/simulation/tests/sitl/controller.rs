@@ -1,4 +1,4 @@
-//! What stands behind the client's link: modes and arming as far as the pilot looks at them, a plain
+//! What stands behind the client's link: the modes and the arming that the pilot looks at, a plain
 //! position and attitude controller, and the airframe's mixer.
 
 use std::io::{Read, Write};

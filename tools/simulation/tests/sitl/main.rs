@@ -37,7 +37,7 @@ struct Truth {
     acceleration: [f64; 3],
 }
 
-/// A flight stack, as far as a simulator sees it.
+/// What a simulator sees of a flight stack.
 trait Client {
     /// One step under throttles; the state after it.
     fn step(&mut self, throttles: &[f64; ROTORS]) -> Truth;
