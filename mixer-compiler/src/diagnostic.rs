@@ -22,6 +22,7 @@ pub use self::wording::{cut_to, is_plain, printable, printable_lines, rounded, r
 
 /// One fault.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Diagnostic {
     /// Kind of fault.
     pub code: Code,
@@ -120,6 +121,7 @@ const LONGEST_LINE: usize = 4096;
 
 /// One fault for machines: `cargo mixer check --json`.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[non_exhaustive]
 pub struct Record {
     /// `MIX014`.
     pub code: String,
