@@ -227,10 +227,10 @@ fn the_airframe_page_is_an_airframe() {
     let toml = blocks(&page)
         .into_iter()
         .filter(|(language, _)| language == "toml");
-    // `[layout]` stands in place of `[[unit]]`.
+    // `[layout]` stands in place of `[[unit]]`, and `[pair]` in place of several.
     let sections: Vec<String> = toml
         .map(|(_, text)| text)
-        .filter(|text| !text.starts_with("[[unit]]"))
+        .filter(|text| !text.starts_with("[[unit]]") && !text.starts_with("[[pair]]"))
         .collect();
     let text = sections.concat();
     let compiled = mixer_compiler::compile(&Source::new("airframe.md", text))

@@ -54,6 +54,7 @@ def regular(layout, bench_spin):
             "position_m": [layout["arm_m"] * math.cos(angle), layout["arm_m"] * math.sin(angle), 0.0],
             "upper_spin": layout.get("spins", {k: spin for k in range(n)})[k],
             "channels": layout.get("channels", {k: [k, n + k] for k in range(n)})[k],
+            "pair": layout.get("pairs", {k: None for k in range(n)})[k],
         })
     return units
 
@@ -63,11 +64,10 @@ class Airframe:
         with open(path, "rb") as file:
             spec = tomllib.load(file)
         self.low, self.high = spec["throttle"]["min"], spec["throttle"]["max"]
-        pair = spec["pair"]
-        self.terms = TERMS[pair["basis"]]
-        self.coefficients = [pair["thrust_n"], pair["torque_nm"]]
-        # Of the upper and of the lower rotor alone, by the rotor that is out: a1 x + a2 x^2 + a3 x^3.
-        self.alone = [pair.get("lower_out"), pair.get("upper_out")]
+        pairs = spec["pair"] if isinstance(spec["pair"], list) else [spec["pair"]]
+        named = {pair.get("name"): pair for pair in pairs}
+        # That of each unit, and its coefficients of thrust and of torque, each with its powers of u and l.
+        self.pairs, self.maps = [], []
         self.voltage = spec.get("voltage")
         self.air = spec.get("air")
         inverse = spec.get("inverse", {})
@@ -77,7 +77,10 @@ class Airframe:
         self.power_bias = allocation.get("power_bias_nm_per_n", 0.0)
         self.axes = [axis in allocation.get("axes", AXES) for axis in AXES]
         self.channels, columns_f, columns_q = [], [], []
-        for unit in spec.get("unit") or regular(spec["layout"], pair["upper_spin"]):
+        for unit in spec.get("unit") or regular(spec["layout"], pairs[0]["upper_spin"]):
+            pair = named[unit.get("pair")] if len(pairs) > 1 else pairs[0]
+            self.pairs.append(pair)
+            self.maps.append([list(zip(pair[key], TERMS[pair["basis"]])) for key in ("thrust_n", "torque_nm")])
             (x, y, z), (ax, ay, az) = unit["position_m"], unit.get("axis", [0.0, 0.0, -1.0])
             length = math.sqrt(ax * ax + ay * ay + az * az)
             ax, ay, az = ax / length, ay / length, az / length
@@ -88,17 +91,17 @@ class Airframe:
             self.channels.append(unit["channels"])
         self.units = len(self.channels)
         is_vertical = all(column[2] == 0.0 for column in columns_f)
-        self.is_general = self.units > 4 or not is_vertical or self.airmode == "roll-pitch-yaw"
+        self.is_general = len(pairs) > 1 or self.units > 4 or not is_vertical or self.airmode == "roll-pitch-yaw"
         columns = columns_f + columns_q
         self.m = [[column[row] for column in columns] for row in range(4)]
-        self.size = self.largest()
+        self.size = [self.largest(unit) for unit in range(self.units)]
         self.m_plus = self.pseudo_inverse()
 
     def pseudo_inverse(self):
         """D (M D)+ = D^2 M^T (M D^2 M^T)^-1 over the served rows, zero columns elsewhere (eq. (7)): of least norm in shares
         of a unit's largest thrust and torque, D."""
         served = [row for row in range(4) if self.axes[row]]
-        squares = [size * size for size in self.size for _ in range(self.units)]
+        squares = [size[k] * size[k] for k in (0, 1) for size in self.size]
         gram = [[sum(a * d * b for a, d, b in zip(self.m[i], squares, self.m[j])) for j in served] for i in served]
         inverse = invert(gram)
         result = [[0.0] * 4 for _ in range(2 * self.units)]
@@ -107,14 +110,21 @@ class Airframe:
                 result[k][column] = squares[k] * sum(self.m[i][k] * inverse[a][j] for a, i in enumerate(served))
         return result
 
-    def largest(self):
+    def largest(self, unit):
         """The largest thrust and torque of a unit, which lie on the border of the box of throttles."""
         ends, along = (self.low, self.high), [self.low + (self.high - self.low) * k / 32 for k in range(33)]
-        border = [self.efforts(*at) for a in along for end in ends for at in ((a, end), (end, a))]
+        border = [self.efforts(unit, *at) for a in along for end in ends for at in ((a, end), (end, a))]
         return [max(abs(efforts[k]) for efforts in border) for k in (0, 1)]
 
-    def efforts(self, u, l):
-        return [sum(c * u**i * l**j for c, (i, j) in zip(cs, self.terms)) for cs in self.coefficients]
+    def efforts(self, unit, u, l):
+        return [sum(c * u**i * l**j for c, (i, j) in terms) for terms in self.maps[unit]]
+
+    def span(self, unit):
+        """The largest torque of one rotor at full throttle, the other at idle."""
+        return max(abs(self.efforts(unit, *at)[1]) for at in ((self.low, self.high), (self.high, self.low)))
+
+    def full(self, unit):
+        return abs(self.efforts(unit, self.high, self.high)[0])
 
     def given(self, unit, throttles, failed):
         """What a unit gives with the rotors of some channels out."""
@@ -122,16 +132,18 @@ class Airframe:
         out = [channel in failed for channel in self.channels[unit]]
         if out[0] != out[1]:
             rotor = 0 if out[1] else 1
-            if self.alone[rotor]:
+            # Of the rotor alone: a1 x + a2 x^2 + a3 x^3.
+            alone = self.pairs[unit].get("upper_out" if rotor else "lower_out")
+            if alone:
                 keys = ("thrust_n", "torque_nm")
-                return [sum(c * at[rotor] ** (k + 1) for k, c in enumerate(self.alone[rotor][key])) for key in keys]
-        return self.efforts(*at)
+                return [sum(c * at[rotor] ** (k + 1) for k, c in enumerate(alone[key])) for key in keys]
+        return self.efforts(unit, *at)
 
-    def jacobian(self, u, l):
+    def jacobian(self, unit, u, l):
         rows = []
-        for cs in self.coefficients:
-            by_u = sum(c * i * u ** (i - 1) * l**j for c, (i, j) in zip(cs, self.terms) if i)
-            by_l = sum(c * j * u**i * l ** (j - 1) for c, (i, j) in zip(cs, self.terms) if j)
+        for terms in self.maps[unit]:
+            by_u = sum(c * i * u ** (i - 1) * l**j for c, (i, j) in terms if i)
+            by_l = sum(c * j * u**i * l ** (j - 1) for c, (i, j) in terms if j)
             rows.append((by_u, by_l))
         return rows
 
@@ -163,20 +175,20 @@ class Airframe:
                 break
         return k0 + (k1 - k0) * (volts - v0) / (v1 - v0)
 
-    def attains(self, efforts):
-        """True if some throttles within range give these efforts at the reference voltage: damped Newton steps,
+    def attains(self, unit, efforts):
+        """True if some throttles within range give a unit these efforts at the reference voltage: damped Newton steps,
         projected on the box, from its middle and its corners."""
         middle = 0.5 * (self.low + self.high)
         starts = [(middle, middle)] + [(u, l) for u in (self.low, self.high) for l in (self.low, self.high)]
-        scale = self.size
+        scale = self.size[unit]
         for u, l in starts:
             for _ in range(60):
-                given = self.efforts(u, l)
+                given = self.efforts(unit, u, l)
                 missing = [want - got for want, got in zip(efforts, given)]
                 size = max(abs(miss) / s for miss, s in zip(missing, scale))
                 if size < 1e-11:
                     return True
-                (a, b), (c, d) = self.jacobian(u, l)
+                (a, b), (c, d) = self.jacobian(unit, u, l)
                 det = a * d - b * c
                 if det <= 0:
                     break
@@ -197,13 +209,18 @@ class Airframe:
         return [w - sum(m * x for m, x in zip(row, wrench)) for w, row in zip(wish, self.m_plus)]
 
     def isolated_throttle(self, thrust):
-        """d with f(d, 0) = thrust, by bisection, limited to the range."""
-        alone = [(c, i) for c, (i, j) in zip(self.coefficients[0], self.terms) if j == 0]
+        """d with f(d, 0) = thrust of the mean unit, by bisection, limited to the range."""
+        alone = [(c / self.units, i) for thrust, _ in self.maps for c, (i, j) in thrust if j == 0]
         low, high = self.low, self.high
         for _ in range(60):
             middle = 0.5 * (low + high)
             low, high = (middle, high) if sum(c * middle**i for c, i in alone) < thrust else (low, middle)
         return low
+
+    def mean(self, throttle):
+        """What the upper rotor of the mean unit gives alone."""
+        each = [self.efforts(unit, throttle, 0.0) for unit in range(self.units)]
+        return [sum(efforts[k] for efforts in each) / self.units for k in (0, 1)]
 
     def wrench(self, efforts):
         return [sum(m * effort for m, effort in zip(row, efforts)) for row in self.m]
@@ -228,17 +245,16 @@ def draw(airframe, count, seed):
     """A third wrenches of random throttles, a third ordinary ones about hover, a third far out."""
     source = random.Random(seed)
     low, high = airframe.voltage["range_v"] if airframe.voltage else (14.0, 14.0)
-    full = airframe.efforts(airframe.high, airframe.high)[0]
-    span = max(abs(airframe.efforts(airframe.low, airframe.high)[1]), abs(airframe.efforts(airframe.high, airframe.low)[1]))
     n = airframe.units
-    size = [sum(abs(row[i]) * full + abs(row[n + i]) * span for i in range(n)) for row in airframe.m]
+    full, span = [airframe.full(i) for i in range(n)], [airframe.span(i) for i in range(n)]
+    size = [sum(abs(row[i]) * full[i] + abs(row[n + i]) * span[i] for i in range(n)) for row in airframe.m]
     yield COLUMNS + ["voltage_v"]
     for index in range(count):
         volts = source.uniform(low - 0.5, high + 0.5)
         k_f, k_q = airframe.factors(volts)
         if index % 3 == 0:
             throttles = [[source.uniform(airframe.low, airframe.high) for _ in "ul"] for _ in range(n)]
-            efforts = [airframe.efforts(u, l) for u, l in throttles]
+            efforts = [airframe.efforts(unit, u, l) for unit, (u, l) in enumerate(throttles)]
             wrench = airframe.wrench([k_f * f for f, _ in efforts] + [k_q * q for _, q in efforts])
         elif index % 3 == 1:
             wrench = [source.gauss(0.0, 0.08) * s for s in size[:3]] + [source.uniform(0.05, 0.9) * size[3] * k_f]
@@ -250,19 +266,21 @@ def draw(airframe, count, seed):
 
 def rounding(airframe, k):
     """What f32 arithmetic may add to each axis of the achieved wrench."""
-    full, n = abs(airframe.efforts(airframe.high, airframe.high)[0]) * k[0], airframe.units
-    torque = max(abs(airframe.efforts(airframe.low, airframe.high)[1]), abs(airframe.efforts(airframe.high, airframe.low)[1])) * k[1]
-    return [2e-6 * sum(abs(row[i]) * full + abs(row[n + i]) * torque for i in range(n)) + 1e-9 for row in airframe.m]
+    n = airframe.units
+    full, torque = [airframe.full(i) * k[0] for i in range(n)], [airframe.span(i) * k[1] for i in range(n)]
+    return [2e-6 * sum(abs(row[i]) * full[i] + abs(row[n + i]) * torque[i] for i in range(n)) + 1e-9 for row in airframe.m]
 
 
 def has_room(airframe, wanted, shift, k):
     """Whether every unit could move by twice the largest shift of all either way, and by a little more of torque."""
     n = airframe.units
-    torque = max(abs(airframe.efforts(airframe.low, airframe.high)[1]), abs(airframe.efforts(airframe.high, airframe.low)[1]))
+    torque = max(airframe.span(i) for i in range(n))
     by_q = 2.0 * max(map(abs, shift[n:])) / k[1] + 0.05 * torque
     by_f = 2.0 * max(map(abs, shift[:n])) / k[0]
     at = [[wanted[i] / k[0], wanted[n + i] / k[1]] for i in range(n)]
-    return all(airframe.attains([f + a * by_f, q + b * by_q]) for f, q in at for a in (-1, 1) for b in (-1, 1))
+    return all(
+        airframe.attains(i, [f + a * by_f, q + b * by_q]) for i, (f, q) in enumerate(at) for a in (-1, 1) for b in (-1, 1)
+    )
 
 
 def judge_row(airframe, request, conditions, throttles, achieved, saturation, failed):
@@ -283,7 +301,7 @@ def judge_row(airframe, request, conditions, throttles, achieved, saturation, fa
             faults.append(f"achieved {axis} is {was!r}, the mixer says {said!r}")
 
     wanted = [sum(m * r for m, r in zip(row, request)) for row in airframe.m_plus]
-    attainable = not failed and all(airframe.attains([wanted[i] / k[0], wanted[n + i] / k[1]]) for i in range(n))
+    attainable = not failed and all(airframe.attains(i, [wanted[i] / k[0], wanted[n + i] / k[1]]) for i in range(n))
     budget = [
         sum(abs(row[i]) * airframe.tolerance[0] + abs(row[n + i]) * airframe.tolerance[1] for i in range(n)) + 4 * allowed
         for row, allowed in zip(airframe.m, noise)
@@ -312,7 +330,7 @@ def judge_row(airframe, request, conditions, throttles, achieved, saturation, fa
         # What the general path gives of one axis for another, as a share of what all units have.
         share = 3e-3 if airframe.is_general else 0.0
         most = [
-            sum(abs(row[i]) * airframe.size[0] + abs(row[n + i]) * airframe.size[1] for i in range(n)) for row in airframe.m
+            sum(abs(row[i]) * airframe.size[i][0] + abs(row[n + i]) * airframe.size[i][1] for i in range(n)) for row in airframe.m
         ]
         room = [allowed + share * size for allowed, size in zip(budget, most)]
         for axis in range(3):
@@ -329,7 +347,7 @@ def judge_row(airframe, request, conditions, throttles, achieved, saturation, fa
                 turned = abs(truth[0] * request[1] - truth[1] * request[0]) / length
                 if turned > room[0] + room[1]:
                     faults.append(f"(roll, pitch) turns by {turned!r} N m: {request[:2]} asked, {truth[:2]} given")
-        floor = n * k[0] * airframe.efforts(airframe.low, airframe.low)[0]
+        floor = k[0] * sum(airframe.efforts(i, airframe.low, airframe.low)[0] for i in range(n))
         # Room for the torque at idle, which must be balanced before the thrust counts as least.
         if airframe.airmode == "disabled" and truth[3] > max(request[3], 1.25 * floor) + room[3]:
             faults.append(f"thrust is raised from {request[3]!r} to {truth[3]!r}")
@@ -381,7 +399,7 @@ class Isolated:
         self.airframe = airframe
         n = airframe.units
         grid = [airframe.low + (airframe.high - airframe.low) * i / 50 for i in range(51)]
-        alone = [airframe.efforts(d, 0.0) for d in grid]
+        alone = [airframe.mean(d) for d in grid]
         kappa = sum(abs(q) * f for f, q in alone) / sum(f * f for f, _ in alone)
         # Rotor columns: a unit's upper rotor turns against its lower one.
         self.columns = []
@@ -396,7 +414,7 @@ class Isolated:
         for row, column in zip(self.rows, self.columns):
             for a, axis in enumerate(served):
                 row[axis] = sum(column[i] * inverse[b][a] for b, i in enumerate(served))
-        self.bounds = [airframe.efforts(airframe.low, 0.0)[0], airframe.efforts(airframe.high, 0.0)[0]]
+        self.bounds = [airframe.mean(airframe.low)[0], airframe.mean(airframe.high)[0]]
 
     def thrusts(self, request):
         return [sum(share * value for share, value in zip(row, request)) for row in self.rows]

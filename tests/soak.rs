@@ -4,7 +4,7 @@
 
 use mixer_compiler::Compiled;
 use mixer_tests::frames;
-use mixer_tests::frames::zoo::Specimen;
+use mixer_tests::frames::zoo::{Specimen, Zoo};
 use mixer_tests::request::Frame;
 use mixer_tests::soak::limits::Check;
 use mixer_tests::soak::{Failure, Soak};
@@ -16,7 +16,17 @@ const FRAMES: u64 = 12;
 
 #[test]
 fn answers_of_the_zoo_are_those_of_the_physics() {
-    let mut soak = Soak::new(frames::zoo(SEED).expect("airframes/"), SEED);
+    answers_are_those_of_the_physics(SEED, frames::zoo(SEED).expect("airframes/"));
+}
+
+#[test]
+fn answers_of_unlike_pairs_are_those_of_the_physics() {
+    const OTHERS: u64 = 4;
+    answers_are_those_of_the_physics(OTHERS, frames::zoo(OTHERS).expect("airframes/").unlike());
+}
+
+fn answers_are_those_of_the_physics(seed: u64, zoo: Zoo) {
+    let mut soak = Soak::new(zoo, seed);
     let mut failures = Vec::new();
     for index in 0..FRAMES {
         failures.extend(soak.frame(index).expect("solved"));

@@ -44,6 +44,7 @@ airframes! {
     x8_11in_least_power: "../airframes/x8-11in-least-power.toml", "x8-11in-least-power", x8_11in_least_power::X8_11inLeastPower;
     x8_16in_biquadratic: "../airframes/x8-16in-biquadratic.toml", "x8-16in-biquadratic", x8_16in_biquadratic::X8_16inBiquadratic;
     x8_16in_quartic: "../airframes/x8-16in-quartic.toml", "x8-16in-quartic", x8_16in_quartic::X8_16inQuartic;
+    x8_22_16in: "../airframes/x8-22-16in.toml", "x8-22-16in", x8_22_16in::X8_22_16in;
     x8_22in_cubic: "../airframes/x8-22in-cubic.toml", "x8-22in-cubic", x8_22in_cubic::X8_22inCubic;
 }
 

@@ -15,6 +15,7 @@ mod uncertainty;
 mod unit;
 mod vehicle;
 
+use std::borrow::Cow;
 use std::ops::Range;
 
 use toml::de::DeTable;
@@ -44,8 +45,8 @@ keys! { FILE = "":
         "Free text.";
     THROTTLE "throttle" = "", Kind::Table(&throttle::TABLE),
         "The range of every rotor's throttle.".required();
-    PAIR "pair" = "", Kind::Table(&pair::TABLE),
-        "Total thrust and torque of one unit at the reference voltage, from the bench.".required();
+    PAIR "pair" = "", Kind::TableOrTables(&pair::TABLE),
+        "Total thrust and torque of one unit at the reference voltage, from the bench; `[[pair]]` with a name each where units differ.".required();
     VOLTAGE "voltage" = "", Kind::Table(&correction::VOLTAGE_TABLE),
         "How thrust and torque follow the battery's voltage; without it they do not.";
     AIR "air" = "", Kind::Table(&correction::AIR_TABLE),
@@ -76,8 +77,11 @@ pub struct Airframe {
     pub description: String,
     /// Range of every throttle.
     pub throttle: Throttle,
-    /// Model of one pair at the reference voltage.
+    /// Model of one pair at the reference voltage: that of all units, or where they differ that of the first
+    /// `[[pair]]`.
     pub pair: Pair,
+    /// The other pairs, where units differ: [`Airframe::pair_of`].
+    pub other_pairs: Vec<Pair>,
     /// Correction for the battery's voltage, V; `None` where thrust and torque do not depend on it.
     pub voltage: Option<Correction>,
     /// Correction for the air's density, kg/m3; `None` where they do not depend on it.
@@ -93,6 +97,8 @@ pub struct Airframe {
     pub vehicle: Option<Vehicle>,
     /// `layout.first_angle_deg` as written, which the units no longer tell.
     pub(crate) first_angle_deg: Option<f64>,
+    /// Which `[[pair]]` of the file is meant by `pair`: [`Airframe::of_each_pair`].
+    view: Option<usize>,
     places: Places,
 }
 
@@ -132,6 +138,86 @@ impl Airframe {
     /// Number of rotors, twice that of the units.
     pub fn rotors(&self) -> usize {
         2 * self.units.len()
+    }
+
+    /// The pairs of the file, in its order.
+    pub fn pairs(&self) -> impl Iterator<Item = &Pair> {
+        std::iter::once(&self.pair).chain(&self.other_pairs)
+    }
+
+    /// Whether units have different pairs.
+    pub fn is_unlike(&self) -> bool {
+        !self.other_pairs.is_empty()
+    }
+
+    /// The pair of a unit.
+    pub fn pair_of(&self, unit: &Unit) -> &Pair {
+        match unit.pair.checked_sub(1) {
+            Some(other) => &self.other_pairs[other],
+            None => &self.pair,
+        }
+    }
+
+    /// The words `, pair "front"`; none where all units are alike.
+    pub fn named_pair(&self, unit: &Unit) -> String {
+        match self.is_unlike() {
+            true => format!(", pair \"{}\"", self.pair_of(unit).name),
+            false => String::new(),
+        }
+    }
+
+    /// The airframe once for each of its pairs, as if all units had that one: for what is said of a pair, which the
+    /// diagnostics of these then name.
+    pub fn of_each_pair(&self) -> Vec<Airframe> {
+        if !self.is_unlike() {
+            return vec![self.clone()];
+        }
+        // The torque of a unit keeps its sign.
+        let alike = |unit: &Unit, pair: &Pair| Unit {
+            pair: 0,
+            upper_spin: match self.spin_sign(unit) > 0.0 {
+                true => pair.upper_spin,
+                false => pair.upper_spin.reversed(),
+            },
+            ..unit.clone()
+        };
+        let view = |(k, pair): (usize, &Pair)| Airframe {
+            pair: pair.clone(),
+            other_pairs: Vec::new(),
+            units: self.units.iter().map(|unit| alike(unit, pair)).collect(),
+            view: Some(k),
+            ..self.clone()
+        };
+        self.pairs().enumerate().map(view).collect()
+    }
+
+    /// The same airframe with the mean of its units' pairs in all of them: what a mixer has that takes rotors for alike.
+    pub fn with_mean_pair(&self) -> Airframe {
+        let mut of_first = self.of_each_pair().swap_remove(0);
+        let mean = |terms: fn(&Pair) -> &Vec<f64>, term: usize| {
+            let values = self.units.iter().map(|unit| terms(self.pair_of(unit))[term]);
+            values.sum::<f64>() / self.units.len() as f64
+        };
+        if self.is_unlike() {
+            let terms = 0..self.pair.thrust_n.len();
+            of_first.pair.thrust_n = terms
+                .clone()
+                .map(|term| mean(|pair| &pair.thrust_n, term))
+                .collect();
+            of_first.pair.torque_nm = terms.map(|term| mean(|pair| &pair.torque_nm, term)).collect();
+        }
+        of_first
+    }
+
+    /// Whose pairs they are, where they are not the airframe's own, as a line of saved files says it.
+    pub fn borrowed(&self) -> Option<String> {
+        let told: Vec<String> = self.pairs().filter_map(Pair::borrowed).collect();
+        (!told.is_empty()).then(|| told.join("; "))
+    }
+
+    /// Sign s of a unit's torque in yaw: +1 where its upper rotor spins as on the bench of its pair, else -1.
+    pub fn spin_sign(&self, unit: &Unit) -> f64 {
+        unit.spin_sign(self.pair_of(unit).upper_spin)
     }
 
     /// The reference voltage, V; 0 without `[voltage]`, as mixers then ignore it.
@@ -182,8 +268,8 @@ impl Airframe {
     /// Electrical power of all rotors at the reference voltage, W, with a throttle per channel;
     /// `None` where the file has no `[pair.power]`, or a channel has no throttle.
     pub fn power_w(&self, throttle: &[f64]) -> Option<f64> {
-        let map = self.pair.power.as_ref()?;
         let of_unit = |unit: &Unit| {
+            let map = self.pair_of(unit).power.as_ref()?;
             let [u, l] =
                 [unit.upper_channel, unit.lower_channel].map(|channel| throttle.get(channel).copied());
             Some(map.at([u?, l?]))
@@ -194,20 +280,28 @@ impl Airframe {
     /// The share of a pair's saving by `power_bias_nm_per_n` that is left in hover, as torques must
     /// cancel: 1 - (sum s / n)^2 with the spins s of n units.
     pub fn power_bias_share(&self) -> f64 {
-        let spins = self.units.iter().map(|unit| unit.spin_sign(self.pair.upper_spin));
+        let spins = self.units.iter().map(|unit| self.spin_sign(unit));
         let mean = spins.sum::<f64>() / self.units.len() as f64;
         1.0 - mean * mean
     }
 
     /// Whether the file itself has a key like `unit[3].channels`.
     pub fn states(&self, key: &str) -> bool {
-        self.places.contains_key(key)
+        self.places.contains_key(self.key(key).as_ref())
     }
 
     /// Place of a key like `unit[3].channels` in the file, or of the nearest table or array around
     /// it that the file has; else of the name.
     pub fn place(&self, key: &str) -> Option<Range<usize>> {
-        spec::place_in(&self.places, key)
+        spec::place_in(&self.places, &self.key(key))
+    }
+
+    /// A key as the file has it: `pair` is `pair[1]` in the view of the second of several.
+    fn key<'k>(&self, key: &'k str) -> Cow<'k, str> {
+        match (key.strip_prefix("pair"), self.view) {
+            (Some(rest), Some(k)) => format!("pair[{k}]{rest}").into(),
+            _ => key.into(),
+        }
     }
 
     /// A fault that a later stage found in `key`, at its place.
@@ -219,7 +313,13 @@ impl Airframe {
         label: impl Into<String>,
         help: impl Into<String>,
     ) -> Diagnostic {
-        Diagnostic::new(code, key, self.place(key), message)
+        let message = match self.view {
+            Some(_) if !self.pair.name.is_empty() => {
+                format!("pair \"{}\": {}", self.pair.name, message.into())
+            }
+            _ => message.into(),
+        };
+        Diagnostic::new(code, self.key(key), self.place(key), message)
             .label(label)
             .help(help)
     }
@@ -242,9 +342,15 @@ fn read(table: &DeTable<'_>, faults: &mut Vec<Diagnostic>) -> Option<Airframe> {
         .and_then(|field| name::check(&field, file.faults));
     let description = file.read::<String>(&DESCRIPTION);
     let throttle = file.table(&THROTTLE, throttle::read).flatten();
-    let (pair, bench_spin) = file
-        .table(&PAIR, |table| pair::read(table, throttle.as_ref()))
-        .unwrap_or_default();
+    let pairs = file.tables(&PAIR, |table| pair::read(table, throttle.as_ref()));
+    let bench_spin = pairs.first().and_then(|(_, spin)| *spin);
+    let pairs: Option<Vec<Pair>> = pairs.into_iter().map(|(pair, _)| pair).collect();
+    let mut pairs = pairs.unwrap_or_default();
+    pair::unite(&mut pairs);
+    // Of a table that is there twice the rest was not read.
+    let is_whole = !file.faults.iter().any(|fault| fault.code == Code::Syntax);
+    let pair_names = pairs.iter().filter(|_| is_whole).map(|pair| pair.name.clone());
+    let pair_names: Vec<String> = pair_names.collect();
     let voltage = file.table(&VOLTAGE, correction::read_voltage);
     let of_voltage = voltage.as_ref().map(Option::as_ref);
     let air = file.table(&AIR, |table| correction::read_air(table, of_voltage));
@@ -297,18 +403,23 @@ fn read(table: &DeTable<'_>, faults: &mut Vec<Diagnostic>) -> Option<Airframe> {
         }
     };
     // A table that was refused left its faults, so that no default takes its place.
+    let units = unit::check(&units, &pair_names, &places, file.faults);
+    let is_one_of_a_list = pairs.len() == 1 && places.contains_key("pair[0]");
+    let mut pairs = pairs.into_iter();
     Some(Airframe {
-        units: unit::check(&units, &places, file.faults)?,
+        units: units?,
         name: name?,
         description: description.map(Spanned::into_inner).unwrap_or_default(),
         throttle: throttle?,
-        pair: pair?,
+        pair: pairs.next()?,
+        other_pairs: pairs.collect(),
         voltage: voltage.flatten(),
         air: air.flatten(),
         inverse: inverse.flatten().unwrap_or_default(),
         allocation: allocation.flatten().unwrap_or_default(),
         vehicle: vehicle.flatten(),
         first_angle_deg,
+        view: is_one_of_a_list.then_some(0),
         places,
     })
 }

@@ -5,7 +5,7 @@ use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
 use crate::compiled::Compiled;
-use crate::tables::{MixerTables, Part, identifier};
+use crate::tables::{ClosedFormTable, MixerTables, Part, identifier};
 
 /// The module of an airframe.
 pub(crate) fn module(compiled: &Compiled) -> TokenStream {
@@ -186,7 +186,7 @@ fn module_lines(compiled: &Compiled) -> Vec<String> {
         format!(" {}.", airframe.description.trim_end_matches('.'))
     });
     lines.push(String::new());
-    if let Some(told) = airframe.pair.borrowed() {
+    if let Some(told) = airframe.borrowed() {
         lines.extend([format!(" Beware: {told}."), String::new()]);
     }
     lines.push(format!(
@@ -199,10 +199,11 @@ fn module_lines(compiled: &Compiled) -> Vec<String> {
     for (index, unit) in airframe.units.iter().enumerate() {
         let [x, y, z] = unit.position_m;
         lines.push(format!(
-            " * unit {index} at ({x:?}, {y:?}, {z:?}) m, upper rotor {}: channel {} upper, {} lower",
+            " * unit {index} at ({x:?}, {y:?}, {z:?}) m, upper rotor {}: channel {} upper, {} lower{}",
             unit.upper_spin.name(),
             unit.upper_channel,
-            unit.lower_channel
+            unit.lower_channel,
+            airframe.named_pair(unit)
         ));
     }
     lines.push(String::new());
@@ -233,11 +234,21 @@ fn tables(tables: &MixerTables) -> TokenStream {
     let (spread, level) = (view.mean_square_slopes.tokens(), view.level_n.tokens());
     let (priorities, is_vertical) = (view.priorities.tokens(), view.is_vertical);
     let (power_bias, tolerance) = (view.power_bias_nm_per_n.tokens(), view.tolerance.tokens());
-    let (closed_form, closed_form_type) = match &view.closed_form {
-        Some(table) => (Part::tokens(&table), quote!(&tables::ClosedForm<'static>)),
-        None => (quote!(tables::NoClosedForm), quote!(tables::NoClosedForm)),
-    };
     let (basis, inverse_type) = (tables.pair.thrust.type_tokens(), tables.inverse.type_tokens());
+    let (alias, said) = match tables.unlike() {
+        Some(_) => (
+            Some(quote!(type Kinds = tables::Unlike<'static, #basis, #inverse_type>;)),
+            " What each kind of unit gives, and which unit is which, in place of a closed form of allocation.",
+        ),
+        None => (None, " The closed form of allocation, where there is one."),
+    };
+    let said = doc(&[said.to_owned()]);
+    let closed_form_table = tables.closed_form.as_ref().map(ClosedFormTable::view);
+    let (closed_form, closed_form_type) = match (&closed_form_table, tables.unlike()) {
+        (Some(table), _) => (Part::tokens(&table), quote!(&tables::ClosedForm<'static>)),
+        (None, Some(unlike)) => (unlike.tokens(), quote!(Kinds)),
+        (None, None) => (quote!(tables::NoClosedForm), quote!(tables::NoClosedForm)),
+    };
     quote! {
         /// The units: rows of M+, columns of M, output channels.
         const UNIT_TABLES: [tables::Unit; UNITS] = #units;
@@ -251,7 +262,8 @@ fn tables(tables: &MixerTables) -> TokenStream {
         const VOLTAGE: ::core::option::Option<tables::Law<'static>> = #voltage;
         /// How they follow the air's density, kg/m3.
         const AIR: ::core::option::Option<tables::Law<'static>> = #air;
-        /// The closed form of allocation, where there is one.
+        #alias
+        #said
         const CLOSED_FORM: #closed_form_type = #closed_form;
 
         /// All tables; see `mixer_rt::tables` for their meaning and units.

@@ -69,6 +69,8 @@ pub struct Flywheel {
 impl Flywheel {
     /// A rotor of an airframe of a mass, kg, and of an inertia, kg m2, if that is known; `None` where the vehicle does not hover.
     pub fn new(airframe: &Airframe, mass_kg: f64, inertia_kg_m2: Option<f64>) -> Option<Flywheel> {
+        // Where units differ, that of the mean pair.
+        let airframe = &airframe.with_mean_pair();
         let map = PairMap::new(&airframe.pair, &airframe.throttle);
         let [_, full] = map.range();
         let upwards: f64 = airframe.units.iter().map(|unit| -unit.axis[2]).sum();

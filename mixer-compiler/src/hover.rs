@@ -8,6 +8,7 @@ use serde::Serialize;
 use crate::airframe::Axis;
 use crate::compiled::Compiled;
 use crate::diagnostic::{Code, Diagnostic, rounded};
+use crate::model::scales;
 use crate::tables::MixerTables;
 
 /// How finely a largest torque is looked for.
@@ -204,7 +205,10 @@ fn limits(compiled: &Compiled) -> Option<Diagnostic> {
 /// Hover leaves less of an axis than the pair may be off by, at the lowest voltage.
 fn margins(compiled: &Compiled) -> Vec<Diagnostic> {
     let airframe = &compiled.airframe;
-    let (Some(weight_n), Some(_)) = (airframe.weight_n(), &airframe.pair.uncertainty) else {
+    let Some(weight_n) = airframe
+        .weight_n()
+        .filter(|_| airframe.pairs().all(|pair| pair.uncertainty.is_some()))
+    else {
         return Vec::new();
     };
     let lowest_v = airframe.voltage.as_ref().map(|voltage| voltage.range[0]);
@@ -314,22 +318,26 @@ impl HoverAt {
 
 /// A torque that no throttles exceed: all units at their largest thrust and torque.
 fn largest_torque(compiled: &Compiled, axis: Axis) -> f64 {
-    let [f, q] = compiled.pair.scale();
-    let [k_f, k_q] = crate::model::law::largest_factors(&compiled.airframe);
-    compiled.effectiveness.largest(axis as usize, [f * k_f, q * k_q])
+    let factors = crate::model::law::largest_factors(&compiled.airframe);
+    compiled
+        .effectiveness
+        .largest(axis as usize, &scales(&compiled.airframe, factors))
 }
 
 /// What an axis is off by where every unit misses its model by one standard deviation, all to the
-/// same end: the units have one model, so their errors go together. N or N m; `None` without
+/// same end: units of one pair have one model, so their errors go together. N or N m; `None` without
 /// `[pair.uncertainty]`.
 pub fn band(compiled: &Compiled, axis: Axis, voltage_v: Option<f64>) -> Option<f64> {
     let airframe = &compiled.airframe;
-    let uncertainty = airframe.pair.uncertainty.as_ref()?;
     let [k_f, k_q] = voltage_v.map_or([1.0; 2], |volts| airframe.voltage_factors(volts));
-    let [f, q] = compiled.pair.scale();
-    let off = [
-        0.01 * uncertainty.thrust_percent * k_f * f,
-        0.01 * uncertainty.torque_percent * k_q * q,
-    ];
-    Some(compiled.effectiveness.largest(axis as usize, off))
+    let units = airframe.units.iter().zip(scales(airframe, [1.0; 2]));
+    let off = units.map(|(unit, [f, q])| {
+        let uncertainty = airframe.pair_of(unit).uncertainty.as_ref()?;
+        Some([
+            0.01 * uncertainty.thrust_percent * k_f * f,
+            0.01 * uncertainty.torque_percent * k_q * q,
+        ])
+    });
+    let off: Vec<[f64; 2]> = off.collect::<Option<_>>()?;
+    Some(compiled.effectiveness.largest(axis as usize, &off))
 }

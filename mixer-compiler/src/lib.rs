@@ -72,6 +72,7 @@ use selection::Selected;
 use tables::{MixerTables, Parts};
 
 pub use compiled::Compiled;
+use compiled::OfPair;
 pub use diagnostic::source::Source;
 pub use diagnostic::{Code, Diagnostic, Diagnostics, Record, Severity};
 #[cfg(feature = "unstable")]
@@ -97,21 +98,34 @@ pub fn compile(source: &Source) -> Result<Compiled, Diagnostics> {
 
 fn compile_airframe(source: &Source, airframe: Airframe) -> Result<Compiled, Vec<Diagnostic>> {
     let model = Model::new(airframe)?;
-    let selected = selection::select(&model.airframe, &model.pair, &model.corrections)?;
+    let selected = selection::select(&model.airframes, &model.corrections)?;
     let (tables, lost_between_sides) = model.tables(&selected);
     let thrust_range_n = thrust_range::thrust_range(&model.airframe, &tables)?;
     thrust_range::check_ends(&model.airframe, &tables, thrust_range_n)?;
+    let of_pairs = model.invertible.iter().zip(&selected);
+    let of_pairs = of_pairs.map(|((injectivity, least_idle), selected)| OfPair {
+        injectivity: *injectivity,
+        least_idle: *least_idle,
+        residual: selected.residual,
+        certificate: selected.certificate,
+    });
+    let of_pairs: Vec<OfPair> = of_pairs.collect();
+    let (mut whole, others) = (of_pairs[0].clone(), &of_pairs[1..]);
+    for other in others {
+        whole.include(other);
+    }
     let compiled = Compiled {
         source: source.clone(),
+        pair: PairMap::new(&model.airframe.pair, &model.airframe.throttle),
         airframe: model.airframe,
         effectiveness: model.effectiveness,
-        pair: model.pair,
-        injectivity: model.injectivity,
-        least_idle: model.least_idle,
-        evaluator: selected.map.inverse.evaluator,
-        residual: selected.residual,
+        injectivity: whole.injectivity,
+        least_idle: whole.least_idle,
+        evaluator: selected[0].map.inverse.evaluator,
+        residual: whole.residual,
         thrust_range_n,
-        certificate: selected.certificate,
+        certificate: whole.certificate,
+        of_pairs,
         lost_between_sides,
         tables,
     };
@@ -131,52 +145,60 @@ pub fn lint(compiled: &Compiled) -> Diagnostics {
 /// The mathematics of an airframe: what is known before an inverse is fitted.
 struct Model {
     airframe: Airframe,
-    pair: PairMap,
+    /// The same for each of its pairs.
+    airframes: Vec<Airframe>,
     effectiveness: Effectiveness,
-    injectivity: Injectivity,
-    least_idle: f64,
+    /// Of each pair the proof that it can be inverted, and the least idle.
+    invertible: Vec<(Injectivity, f64)>,
     corrections: CorrectionTables,
 }
 
 impl Model {
     fn new(airframe: Airframe) -> Result<Model, Vec<Diagnostic>> {
-        let pair = PairMap::new(&airframe.pair, &airframe.throttle);
+        let airframes = airframe.of_each_pair();
         let effectiveness = Effectiveness::new(&airframe).and_then(|effectiveness| {
-            plausible::check_authority(&airframe, &effectiveness, &pair)?;
+            plausible::check_authority(&airframe, &effectiveness)?;
             Ok(effectiveness)
         });
-        let invertible = injectivity::prove(&airframe);
-        let tolerances = plausible::check_tolerances(&airframe, &pair);
-        let (effectiveness, (injectivity, least_idle), ()) = gather(effectiveness, invertible, tolerances)?;
+        let (mut invertible, mut tolerances) = (Ok(Vec::new()), Ok(()));
+        for airframe in &airframes {
+            let proven = injectivity::prove(airframe);
+            invertible = gather(invertible, proven, Ok(())).map(|(mut all, proven, ())| {
+                all.push(proven);
+                all
+            });
+            tolerances = gather(tolerances, plausible::check_tolerances(airframe), Ok(())).map(|_| ());
+        }
+        let (effectiveness, invertible, ()) = gather(effectiveness, invertible, tolerances)?;
         Ok(Model {
             corrections: CorrectionTables::new(&airframe),
             airframe,
-            pair,
+            airframes,
             effectiveness,
-            injectivity,
-            least_idle,
+            invertible,
         })
     }
 
     /// The tables, and the share of the attainable set's area that the sides of the closed form lose,
     /// or why there is none.
-    fn tables(&self, selected: &Selected) -> (MixerTables, Result<f64, &'static str>) {
+    fn tables(&self, selected: &[Selected]) -> (MixerTables, Result<f64, &'static str>) {
         let Model {
             airframe,
-            pair,
+            airframes,
             effectiveness,
             corrections,
             ..
         } = self;
         let parts = Parts {
             airframe,
+            airframes,
             effectiveness,
-            pair,
             corrections,
-            map: &selected.map,
-            tolerance: selection::tolerance(airframe, effectiveness, pair, corrections, selected),
+            maps: selected.iter().map(|selected| &selected.map).collect(),
+            tolerance: selection::tolerance(airframe, effectiveness, corrections, airframes, selected),
         };
-        let (closed_form, lost_between_sides) = match closed_form::table(airframe, effectiveness, pair) {
+        let pair = PairMap::new(&airframe.pair, &airframe.throttle);
+        let (closed_form, lost_between_sides) = match closed_form::table(airframe, effectiveness, &pair) {
             Ok((table, lost)) => (Some(table), Ok(lost)),
             Err(reason) => (None, Err(reason)),
         };
@@ -257,13 +279,6 @@ impl Compiled {
         voltage.map_or(0.0, |voltage| voltage.range[1])
     }
 
-    /// Thrust (N) and torque (N m) of one rotor per unit of its share of the largest thrust, as
-    /// flight stacks take it, at the reference voltage. The torque is that of its slope in hover
-    /// where the mass is known, else half of the pair's largest.
-    pub fn per_rotor(&self) -> [f64; 2] {
-        self.rotors(self.airframe.reference_v()).per_rotor()
-    }
-
     /// Throttle of all rotors alike that carries the weight at the reference voltage; `None` without
     /// `[vehicle] mass_kg`, or where none does.
     pub fn equal_hover_throttle(&self) -> Option<f64> {
@@ -280,7 +295,12 @@ impl Compiled {
         scale::Rotors {
             airframe: &self.airframe,
             effectiveness: &self.effectiveness,
-            pair: &self.pair,
+            maps: {
+                let pairs = self.airframe.units.iter().map(|unit| self.airframe.pair_of(unit));
+                pairs
+                    .map(|pair| PairMap::new(pair, &self.airframe.throttle))
+                    .collect()
+            },
             voltage_v,
         }
     }

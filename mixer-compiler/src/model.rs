@@ -13,7 +13,7 @@ pub mod polynomial;
 pub mod pseudo_inverse;
 pub mod wake;
 
-pub use self::pair_map::PairMap;
+pub use self::pair_map::{PairMap, scales};
 pub use self::physics::Physics;
 
 /// The range of torque per thrust, m, beyond which no propeller is: open ones of 4 to 40 inch with an ample

@@ -22,55 +22,83 @@ use rule::{Facts, Rule};
 use crate::airframe::Airframe;
 use crate::compiled::Compiled;
 use crate::diagnostic::Diagnostic;
-use crate::model::PairMap;
+use crate::model::effectiveness::Effectiveness;
 
-/// The rules of one part of an airframe, those that may be the reason of others before these.
-const RULES: [fn(&Facts<'_>) -> Vec<Rule>; 19] = [
-    pair::borrowed,
-    pair::units,
-    rotors::order,
-    pair::thrust,
-    rotors::sizes,
-    pair::shape,
-    pair::power,
-    geometry::odd_place,
-    geometry::arms,
-    geometry::radians,
-    geometry::centre_of_gravity,
-    geometry::outputs,
-    supply::voltage,
-    supply::air,
-    limits::wide_tolerances,
-    allocation::yaw,
-    allocation::power_bias,
-    vehicle::hover,
-    vehicle::rotor_inertia,
+/// What the rules of a function are of: each pair, or the frame.
+enum Of {
+    Pair,
+    Frame,
+}
+
+/// The rules of one part of an airframe.
+type Part = fn(&Facts<'_>) -> Vec<Rule>;
+
+/// All rules, those that may be the reason of others before these.
+const RULES: [(Of, Part); 20] = [
+    (Of::Pair, pair::borrowed),
+    (Of::Pair, pair::units),
+    (Of::Pair, rotors::order),
+    (Of::Pair, pair::thrust),
+    (Of::Pair, rotors::sizes),
+    (Of::Pair, pair::shape),
+    (Of::Pair, pair::power),
+    (Of::Frame, geometry::odd_place),
+    (Of::Frame, geometry::arms),
+    (Of::Frame, geometry::radians),
+    (Of::Frame, geometry::centre_of_gravity),
+    (Of::Frame, geometry::outputs),
+    (Of::Frame, supply::voltage),
+    (Of::Frame, supply::air),
+    (Of::Pair, limits::wide_tolerances),
+    (Of::Frame, allocation::yaw),
+    (Of::Pair, allocation::power_bias),
+    (Of::Frame, allocation::idle_power_bias),
+    (Of::Frame, vehicle::hover),
+    (Of::Pair, vehicle::rotor_inertia),
 ];
 
 /// Warnings of an airframe that compiles.
 pub(crate) fn warnings(compiled: &Compiled) -> Vec<Diagnostic> {
     let thrust_range_n = compiled.thrust_range_n.map(f64::from);
-    check(&Facts::new(
+    check(
         &compiled.airframe,
-        &compiled.pair,
-        Some(&compiled.effectiveness),
-        Some(thrust_range_n),
-    ))
+        Some((&compiled.effectiveness, thrust_range_n)),
+    )
 }
 
 /// Warnings of an airframe that is refused: one of them may be the reason.
 pub(crate) fn warnings_of_refused(airframe: &Airframe) -> Vec<Diagnostic> {
-    let pair = PairMap::new(&airframe.pair, &airframe.throttle);
-    check(&Facts::new(airframe, &pair, None, None))
+    check(airframe, None)
 }
 
-fn check(facts: &Facts<'_>) -> Vec<Diagnostic> {
+/// `compiled` has M and the range of level thrust; `None` where the airframe is refused.
+fn check(airframe: &Airframe, compiled: Option<(&Effectiveness, [f64; 2])>) -> Vec<Diagnostic> {
     let mut found = Vec::new();
-    // A map without thrust or torque has faults enough.
-    if facts.scale.iter().all(|effort| *effort > 0.0) {
-        for rule in RULES.iter().flat_map(|rules| rules(facts)) {
-            rule.check(facts.airframe, &mut found);
+    let mut tell = |airframe: &Airframe, is_of: &dyn Fn(&Of) -> bool| {
+        let facts = Facts::new(airframe, compiled);
+        let mut own = if airframe.is_unlike() {
+            found.clone()
+        } else {
+            Vec::new()
+        };
+        let told = own.len();
+        // A map without thrust or torque has faults enough.
+        if facts.scale.iter().all(|effort| *effort > 0.0) {
+            for (_, rules) in RULES.iter().filter(|(of, _)| is_of(of)) {
+                for rule in rules(&facts) {
+                    rule.check(airframe, &mut own);
+                }
+            }
         }
+        found.extend(own.split_off(told));
+    };
+    if !airframe.is_unlike() {
+        tell(airframe, &|_| true);
+        return found;
     }
+    for of_pair in airframe.of_each_pair() {
+        tell(&of_pair, &|of| matches!(of, Of::Pair));
+    }
+    tell(airframe, &|of| matches!(of, Of::Frame));
     found
 }

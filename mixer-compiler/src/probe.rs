@@ -25,7 +25,7 @@ use mixer_rt::{Axis, Conditions, Health, Saturation, Wrench};
 use crate::airframe::Correction;
 use crate::compiled::Compiled;
 use crate::diagnostic::{Code, Diagnostic};
-use crate::model::Physics;
+use crate::model::{Physics, scales};
 
 /// Share of an axis' authority by which a flagged wrench may be exceeded, reversed or off its
 /// direction. Faults of the tables are off by more. Curves of single rotors, and level flight of tilted
@@ -69,10 +69,9 @@ const MOST_PAIRS: usize = 28;
 /// # Errors
 /// The first one that fails: a fault of the compiler.
 pub(crate) fn run(compiled: &Compiled) -> Result<(), Vec<Diagnostic>> {
-    let scale = compiled.pair.scale();
-    sides::check(compiled, scale)
-        .and_then(|()| probe_whole(compiled, scale))
-        .and_then(|()| probe_rotors_out(compiled, scale))
+    sides::check(compiled, compiled.pair.scale())
+        .and_then(|()| probe_whole(compiled))
+        .and_then(|()| probe_rotors_out(compiled))
         .map_err(|message| {
             vec![compiled.airframe.diagnostic(
                 Code::Probe,
@@ -84,8 +83,8 @@ pub(crate) fn run(compiled: &Compiled) -> Result<(), Vec<Diagnostic>> {
         })
 }
 
-/// Wrenches with all rotors of units of this scale (largest thrust and torque, N and N m).
-fn probe_whole(compiled: &Compiled, scale: [f64; 2]) -> Result<(), String> {
+/// Wrenches with all rotors.
+fn probe_whole(compiled: &Compiled) -> Result<(), String> {
     // All thrusts in the middle of the ranges of voltage and density, one at their ends.
     let between = |correction: &Option<Correction>, share: f64| match correction {
         Some(Correction {
@@ -96,7 +95,7 @@ fn probe_whole(compiled: &Compiled, scale: [f64; 2]) -> Result<(), String> {
     let airframe = &compiled.airframe;
     for (share, thrusts) in [(0.0, &THRUSTS[1..2]), (0.5, &THRUSTS[..]), (1.0, &THRUSTS[1..2])] {
         let conditions = [&airframe.voltage, &airframe.air].map(|correction| between(correction, share));
-        let at = At::new(compiled, scale, conditions, Health::GOOD);
+        let at = At::new(compiled, conditions, Health::GOOD);
         for &share in thrusts {
             let thrust = at.thrust(share);
             at.probe([0.0, 0.0, 0.0, thrust])?;
@@ -110,7 +109,7 @@ fn probe_whole(compiled: &Compiled, scale: [f64; 2]) -> Result<(), String> {
 }
 
 /// Wrenches with one and with two rotors out, where the others keep the frame level.
-fn probe_rotors_out(compiled: &Compiled, scale: [f64; 2]) -> Result<(), String> {
+fn probe_rotors_out(compiled: &Compiled) -> Result<(), String> {
     let rotors = compiled.airframe.rotors() as u8;
     let singles = (0..rotors).map(|rotor| Health::GOOD.with_failed(rotor));
     let pairs: Vec<Health> = (0..rotors)
@@ -123,7 +122,7 @@ fn probe_rotors_out(compiled: &Compiled, scale: [f64; 2]) -> Result<(), String> 
         compiled.airframe.reference_density(),
     ];
     for health in singles.chain(pairs.into_iter().step_by(step)) {
-        let at = At::new(compiled, scale, reference, health);
+        let at = At::new(compiled, reference, health);
         let level = [0.0, 0.0, 0.0, at.thrust(0.4)];
         if !at.probe(level)? {
             continue;
@@ -173,15 +172,15 @@ const JUDGES: [Judge; 5] = [
 ];
 
 impl<'a> At<'a> {
-    fn new(compiled: &'a Compiled, scale: [f64; 2], [volts, density]: [f64; 2], health: Health) -> Self {
+    fn new(compiled: &'a Compiled, [volts, density]: [f64; 2], health: Health) -> Self {
         let factors = compiled.airframe.factors(volts, density);
-        let efforts = [0, 1].map(|k| factors[k] * scale[k]);
+        let efforts = scales(&compiled.airframe, factors);
         At {
             compiled,
             conditions: [volts, density],
             health,
             factors,
-            authority: [0, 1, 2, 3].map(|axis| compiled.effectiveness.largest(axis, efforts)),
+            authority: [0, 1, 2, 3].map(|axis| compiled.effectiveness.largest(axis, &efforts)),
         }
     }
 

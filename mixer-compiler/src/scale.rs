@@ -76,7 +76,8 @@ const HALVINGS: usize = 52;
 pub(crate) struct Rotors<'a> {
     pub(crate) airframe: &'a Airframe,
     pub(crate) effectiveness: &'a Effectiveness,
-    pub(crate) pair: &'a PairMap,
+    /// The map of each unit.
+    pub(crate) maps: Vec<PairMap>,
     /// V; the reference voltage where the airframe has no correction.
     pub(crate) voltage_v: f64,
 }
@@ -123,23 +124,23 @@ impl Rotors<'_> {
 
     /// Wrench that one unit of ArduPilot's inputs asks for; zero on axes that are not served.
     pub(crate) fn ardupilot(&self) -> Wrench {
-        let columns = self.columns();
+        let (columns, alike) = (self.columns(), self.columns_alike());
         let axes = &self.airframe.allocation.axes;
         Wrench::from_array(Axis::ALL.map(|axis| {
             let Some(row) = axes.iter().position(|served| *served == axis) else {
                 return 0.0;
             };
-            let entries = columns.row(row);
+            let (entries, alike) = (columns.row(row), alike.row(row));
             (match axis {
                 Axis::Thrust => entries.sum(),
-                _ => LARGEST_FACTOR * entries.norm_squared() / entries.amax(),
+                _ => LARGEST_FACTOR * entries.dot(&alike) / alike.amax(),
             }) as f32
         }))
     }
 
     /// ArduPilot's factors of roll, pitch and yaw, by channel; zero on axes that are not served.
     pub(crate) fn ardupilot_factors(&self) -> Vec<[f64; 3]> {
-        let columns = self.columns();
+        let columns = self.columns_alike();
         let axes = &self.airframe.allocation.axes;
         let units = &self.airframe.units;
         let channels = units.iter().map(|unit| unit.upper_channel);
@@ -159,24 +160,29 @@ impl Rotors<'_> {
 
     /// Torques that PID sums of 1000 ask Betaflight for; zero on axes that are not served.
     pub(crate) fn betaflight(&self) -> Wrench {
-        let columns = self.columns();
+        let alike = self.columns_alike();
         let axes = &self.airframe.allocation.axes;
-        let [min, max] = self.pair.range();
+        let [min, max] = self.range();
         // Over Betaflight's output, from idle to the largest throttle; 1 without a hover.
         let slope = self.slope_in_hover().map_or(1.0, |slope| (max - min) * slope);
+        let share = |unit: usize| match (self.slope_of(unit), self.slope_in_hover()) {
+            (Some(own), Some(slope)) => own / slope,
+            _ => 1.0,
+        };
+        let columns = self.columns_of(|unit| self.per_rotor(unit).map(|effort| effort * share(unit)));
         Wrench::from_array(Axis::ALL.map(|axis| {
             let row = axes.iter().position(|served| *served == axis);
             row.filter(|_| axis != Axis::Thrust).map_or(0.0, |row| {
-                let entries = columns.row(row);
-                let range = entries.max() - entries.min();
-                (slope * BETAFLIGHT_RANGE * entries.norm_squared() / range) as f32
+                let (entries, alike) = (columns.row(row), alike.row(row));
+                let range = alike.max() - alike.min();
+                (slope * BETAFLIGHT_RANGE * entries.dot(&alike) / range) as f32
             })
         }))
     }
 
     /// e of the throttle stick's curve, from 0 to 2; 1 without a hover. The full stick has `full_n`.
     pub(crate) fn betaflight_expo(&self, full_n: f64) -> f64 {
-        let [min, max] = self.pair.range();
+        let [min, max] = self.range();
         let hover = self.hover_throttle().zip(self.airframe.weight_n());
         let expo = hover.map_or(1.0, |(h, weight_n)| {
             let (stick, share) = ((h - min) / (max - min), weight_n / full_n);
@@ -216,9 +222,9 @@ impl Rotors<'_> {
     /// Place (m), axis, thrust (N) and torque over thrust (m, positive where it turns counter-clockwise)
     /// of the rotor on each channel, each isolated and both of a pair alike.
     pub(crate) fn px4_rotors(&self) -> Vec<[f64; 8]> {
-        let [thrust, torque] = self.per_rotor();
         let mut rotors = vec![[0.0; 8]; self.airframe.rotors()];
-        for unit in &self.airframe.units {
+        for (index, unit) in self.airframe.units.iter().enumerate() {
+            let [thrust, torque] = self.per_rotor(index);
             let upper = (unit.upper_channel, unit.upper_spin, LAYER_M);
             let lower = (unit.lower_channel, unit.upper_spin.reversed(), -LAYER_M);
             for (channel, spin, layer_m) in [upper, lower] {
@@ -233,12 +239,29 @@ impl Rotors<'_> {
 
     /// B, a row per served axis, 2n columns: upper rotors, then lower ones.
     fn columns(&self) -> DMatrix<f64> {
-        let [thrust, torque] = self.per_rotor();
+        self.columns_of(|unit| self.per_rotor(unit))
+    }
+
+    /// B of rotors alike, by their mean, for stacks whose factors follow from the geometry alone.
+    fn columns_alike(&self) -> DMatrix<f64> {
+        let units = if self.airframe.is_unlike() {
+            self.maps.len()
+        } else {
+            1
+        };
+        let each: Vec<[f64; 2]> = (0..units).map(|unit| self.per_rotor(unit)).collect();
+        let mean = [0, 1].map(|k| each.iter().map(|efforts| efforts[k]).sum::<f64>() / units as f64);
+        self.columns_of(|_| mean)
+    }
+
+    /// B of rotors of this thrust and torque by unit.
+    fn columns_of(&self, efforts: impl Fn(usize) -> [f64; 2]) -> DMatrix<f64> {
         let matrix = &self.effectiveness.matrix;
         let n = self.airframe.units.len();
         let axes = &self.airframe.allocation.axes;
         DMatrix::from_fn(axes.len(), 2 * n, |row, rotor| {
             let (axis, i) = (axes[row] as usize, rotor % n);
+            let [thrust, torque] = efforts(i);
             let (by_thrust, by_torque) = (thrust * matrix[(axis, i)], torque * matrix[(axis, n + i)]);
             if rotor < n {
                 by_thrust - by_torque
@@ -248,17 +271,21 @@ impl Rotors<'_> {
         })
     }
 
-    /// c and d, N and N m.
-    pub(crate) fn per_rotor(&self) -> [f64; 2] {
-        let [min, max] = self.pair.range();
+    fn range(&self) -> [f64; 2] {
+        [self.airframe.throttle.min, self.airframe.throttle.max]
+    }
+
+    /// c and d of a unit's rotors, N and N m.
+    pub(crate) fn per_rotor(&self, unit: usize) -> [f64; 2] {
+        let (map, [min, max]) = (&self.maps[unit], self.range());
         let [k_f, k_q] = self.airframe.voltage_factors(self.voltage_v);
-        let full = self.pair.efforts([max, max])[0];
+        let full = map.efforts([max, max])[0];
         let torque = match self.hover_throttle() {
             Some(h) => {
-                let [[f_u, f_l], [q_u, q_l]] = self.pair.jacobian([h, h]);
+                let [[f_u, f_l], [q_u, q_l]] = map.jacobian([h, h]);
                 (q_l - q_u) * full / (f_u + f_l)
             }
-            None => self.pair.efforts([min, max])[1] - self.pair.efforts([max, min])[1],
+            None => map.efforts([min, max])[1] - map.efforts([max, min])[1],
         };
         [0.5 * full * k_f, 0.5 * torque * k_q]
     }
@@ -266,10 +293,20 @@ impl Rotors<'_> {
     /// Slope in hover of the share of the largest thrust over the throttle, both rotors alike: what a stack's loop gain is
     /// multiplied by that takes the one for the other. `None` without a hover.
     pub(crate) fn slope_in_hover(&self) -> Option<f64> {
-        let h = self.hover_throttle()?;
-        let [[f_u, f_l], _] = self.pair.jacobian([h, h]);
-        let max = self.pair.range()[1];
-        Some((f_u + f_l) / self.pair.efforts([max, max])[0])
+        if !self.airframe.is_unlike() {
+            return self.slope_of(0);
+        }
+        let full = |unit: usize| 2.0 * self.per_rotor(unit)[0];
+        let units = 0..self.maps.len();
+        let slopes = units.clone().map(|unit| Some(full(unit) * self.slope_of(unit)?));
+        Some(slopes.sum::<Option<f64>>()? / units.map(full).sum::<f64>())
+    }
+
+    /// [`Rotors::slope_in_hover`] of a unit alone.
+    fn slope_of(&self, unit: usize) -> Option<f64> {
+        let (map, h, [_, max]) = (&self.maps[unit], self.hover_throttle()?, self.range());
+        let [[f_u, f_l], _] = map.jacobian([h, h]);
+        Some((f_u + f_l) / map.efforts([max, max])[0])
     }
 
     /// Throttle of all rotors that carries the weight; `None` without a mass, or where none does.
@@ -285,10 +322,17 @@ impl Rotors<'_> {
         };
         let (by_thrust, by_torque) = (k_f * sum(0), k_q * sum(n));
         let lift = |throttle: f64| {
-            let [f, q] = self.pair.efforts([throttle, throttle]);
+            let efforts = |map: &PairMap| map.efforts([throttle, throttle]);
+            if self.airframe.is_unlike() {
+                let of = |(i, [f, q]): (usize, [f64; 2])| {
+                    k_f * matrix[(row, i)] * f + k_q * matrix[(row, n + i)] * q
+                };
+                return self.maps.iter().map(efforts).enumerate().map(of).sum();
+            }
+            let [f, q] = efforts(&self.maps[0]);
             by_thrust * f + by_torque * q
         };
-        let [mut low, mut high] = self.pair.range();
+        let [mut low, mut high] = self.range();
         if !(lift(low) < weight_n && weight_n < lift(high)) {
             return None;
         }

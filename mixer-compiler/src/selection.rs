@@ -8,9 +8,9 @@ use crate::airframe::Airframe;
 use crate::diagnostic::Diagnostic;
 use crate::inverse::evaluator::Evaluator;
 use crate::inverse::fit::{Inversion, Samples};
-use crate::model::PairMap;
 use crate::model::effectiveness::Effectiveness;
 use crate::model::law::{self, CorrectionTables};
+use crate::model::{PairMap, scales};
 use crate::proof::residual::Residual;
 use crate::proof::{self, Certificate, CorrectionBounds, Patience};
 use crate::tables::{self, UnitMap};
@@ -36,21 +36,38 @@ struct Attempt {
 /// Bounds within this factor of the largest observed residual are sharp enough.
 const SHARP: f64 = 1.15;
 
-/// The cheapest evaluator that is proven to meet the file's tolerance at every voltage and density.
+/// The cheapest evaluator that is proven to meet the file's tolerance at every voltage and density, for each of these
+/// airframes of one pair: the same one for all, with a table of its own for each.
 ///
 /// # Errors
 /// No evaluator meets the tolerance; the best bound that could be proven.
 pub(crate) fn select(
-    airframe: &Airframe,
-    pair: &PairMap,
+    airframes: &[Airframe],
     corrections: &CorrectionTables,
-) -> Result<Selected, Vec<Diagnostic>> {
-    let chosen = choose(airframe, pair, corrections);
-    if chosen.holds() {
-        return Ok(chosen);
+) -> Result<Vec<Selected>, Vec<Diagnostic>> {
+    let place = |selected: &Selected| selected.map.inverse.evaluator.place();
+    let mut least = 0;
+    loop {
+        let selected = airframes.iter().map(|airframe| {
+            let chosen = choose(
+                airframe,
+                &PairMap::new(&airframe.pair, &airframe.throttle),
+                corrections,
+                least,
+            );
+            if chosen.holds() {
+                return Ok(chosen);
+            }
+            let evaluator = chosen.map.inverse.evaluator;
+            Err(vec![refusal::tolerance(airframe, evaluator, &chosen.certificate)])
+        });
+        let selected = selected.collect::<Result<Vec<Selected>, _>>()?;
+        let most = selected.iter().map(place).max().unwrap_or_default();
+        if selected.iter().all(|selected| place(selected) == most) {
+            return Ok(selected);
+        }
+        least = most;
     }
-    let evaluator = chosen.map.inverse.evaluator;
-    Err(vec![refusal::tolerance(airframe, evaluator, &chosen.certificate)])
 }
 
 impl Selected {
@@ -62,12 +79,12 @@ impl Selected {
 
 /// The first evaluator, by cost, that holds, fitted to finer samples where none does; else the one that
 /// came closest.
-fn choose(airframe: &Airframe, pair: &PairMap, corrections: &CorrectionTables) -> Selected {
-    let usual = choose_by(Samples::Usual, airframe, pair, corrections);
+fn choose(airframe: &Airframe, pair: &PairMap, corrections: &CorrectionTables, least: usize) -> Selected {
+    let usual = choose_by(Samples::Usual, airframe, pair, corrections, least);
     if usual.holds() {
         return usual;
     }
-    choose_by(Samples::Fine, airframe, pair, corrections)
+    choose_by(Samples::Fine, airframe, pair, corrections, least)
 }
 
 /// The first evaluator, by cost, that holds. Where none does, the one that came closest, with a
@@ -77,10 +94,11 @@ fn choose_by(
     airframe: &Airframe,
     pair: &PairMap,
     corrections: &CorrectionTables,
+    least: usize,
 ) -> Selected {
     let correction = CorrectionBounds::new(airframe, corrections);
     let tolerance = correction.tolerance_at_reference(airframe);
-    let (cheapest, others) = Evaluator::candidates(airframe.inverse.method);
+    let (cheapest, others) = Evaluator::candidates(airframe.inverse.method, least);
     let mut inversion = Inversion::new(pair, tolerance, samples, others.is_empty());
     let mut attempt = |evaluator: Evaluator| {
         let (inverse, fit_error) = inversion.fit(evaluator);
@@ -125,35 +143,32 @@ fn choose_by(
 }
 
 /// Error below which a request counts as delivered: the proven bound, not what the file allows, so that
-/// any larger shortfall is flagged.
+/// any larger shortfall is flagged. `selected` are those of `airframes`, the airframe's of each pair.
 pub(crate) fn tolerance(
     airframe: &Airframe,
     effectiveness: &Effectiveness,
-    pair: &PairMap,
     corrections: &CorrectionTables,
-    selected: &Selected,
+    airframes: &[Airframe],
+    selected: &[Selected],
 ) -> Tolerance {
-    let certificate = &selected.certificate;
     // The mixer compares what it computes, not what is: a request that is delivered must not look
     // missed.
     let correction = CorrectionBounds::new(airframe, corrections);
-    let rounding = proof::rounding(airframe, &selected.map, &correction);
-    tables::tolerance_table(
-        [0, 1].map(|k| certificate.reference[k] + rounding[k]),
-        wrench_tolerance(airframe, effectiveness, pair, certificate.stated),
-    )
+    let (mut efforts, mut stated) = ([0.0f64; 2], [0.0f64; 2]);
+    for (of_pair, Selected { map, certificate, .. }) in airframes.iter().zip(selected) {
+        let rounding = proof::rounding(of_pair, map, &correction);
+        efforts = [0, 1].map(|k| efforts[k].max(certificate.reference[k] + rounding[k]));
+        stated = [0, 1].map(|k| stated[k].max(certificate.stated[k]));
+    }
+    tables::tolerance_table(efforts, wrench_tolerance(airframe, effectiveness, stated))
 }
 
 /// What the units' misses `stated` add up to on each axis, with the rounding of f32 sums of full
 /// efforts.
-fn wrench_tolerance(
-    airframe: &Airframe,
-    effectiveness: &Effectiveness,
-    pair: &PairMap,
-    stated: [f64; 2],
-) -> [f64; 4] {
+fn wrench_tolerance(airframe: &Airframe, effectiveness: &Effectiveness, stated: [f64; 2]) -> [f64; 4] {
     const ROUNDING: f64 = 4e-6;
-    let (scale, factors) = (pair.scale(), law::largest_factors(airframe));
-    let allowed: [f64; 2] = std::array::from_fn(|k| stated[k] + ROUNDING * scale[k] * factors[k]);
-    std::array::from_fn(|axis| effectiveness.largest(axis, allowed))
+    let factors = law::largest_factors(airframe);
+    let allowed = |scale: [f64; 2]| [0, 1].map(|k: usize| stated[k] + ROUNDING * scale[k] * factors[k]);
+    let allowed: Vec<[f64; 2]> = scales(airframe, [1.0; 2]).into_iter().map(allowed).collect();
+    std::array::from_fn(|axis| effectiveness.largest(axis, &allowed))
 }

@@ -14,8 +14,8 @@ mod single;
 use mixer_rt::{
     Conditions, Health, Saturation, SetpointError, Wrench,
     tables::{
-        Border, Cell, ClosedForm, ClosedFormUnit, Facets, Inverse, Pair, Priorities, SingleRotor, Steep,
-        Tables, ThrottleRange, Tolerance, Unit, UnitState,
+        AllocationMethod, Border, Cell, ClosedForm, ClosedFormUnit, Facets, Inverse, Kind, Pair, Priorities,
+        SingleRotor, Steep, Tables, ThrottleRange, Tolerance, Unit, UnitState, Unlike,
     },
 };
 
@@ -59,8 +59,31 @@ pub struct MixerTables {
     pub power_bias_nm_per_n: f32,
     /// The closed form of allocation, where the layout allows one.
     pub closed_form: Option<ClosedFormTable>,
+    /// What each pair gives, where they differ.
+    pub kinds: Vec<Kind<QuantityTable, InverseTable>>,
+    /// Which of these each unit is.
+    pub kind_of: Vec<u8>,
     /// Largest errors of the mixer.
     pub tolerance: Tolerance,
+}
+
+/// The ways of allocation that an airframe may have.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AnyMethod<'a> {
+    closed_form: Option<ClosedForm<'a>>,
+    unlike: Option<Unlike<'a, QuantityTable, InverseTable>>,
+}
+
+impl AllocationMethod<QuantityTable> for AnyMethod<'_> {
+    type Inverse = InverseTable;
+
+    fn closed_form(&self) -> Option<&ClosedForm<'_>> {
+        self.closed_form.as_ref()
+    }
+
+    fn unlike(&self) -> Option<&Unlike<'_, QuantityTable, InverseTable>> {
+        self.unlike.as_ref()
+    }
 }
 
 /// What is fitted and proven: the map of a unit, its inverse, and the throttles that it may give.
@@ -86,7 +109,7 @@ impl UnitMap {
 
     /// Throttles `[u, l]` that give `efforts` (N, N m at the reference voltage), by `mixer-rt`.
     pub(crate) fn throttles(&self, efforts: [f32; 2]) -> [f32; 2] {
-        (&self.inverse).throttles(&self.pair, &self.throttle, efforts)
+        self.inverse.throttles(&self.pair, &self.throttle, efforts)
     }
 }
 
@@ -96,12 +119,12 @@ pub(crate) struct Parts<'a> {
     pub(crate) airframe: &'a Airframe,
     /// M and M+.
     pub(crate) effectiveness: &'a Effectiveness,
-    /// The forward map in f64.
-    pub(crate) pair: &'a PairMap,
+    /// The airframe of each pair.
+    pub(crate) airframes: &'a [Airframe],
     /// The corrections of voltage and density.
     pub(crate) corrections: &'a CorrectionTables,
-    /// The map of a unit and its inverse.
-    pub(crate) map: &'a UnitMap,
+    /// The map of each pair and its inverse.
+    pub(crate) maps: Vec<&'a UnitMap>,
     /// What the mixer may miss.
     pub(crate) tolerance: Tolerance,
 }
@@ -151,20 +174,28 @@ impl MixerTables {
         let &Parts {
             airframe,
             effectiveness,
-            map,
             ..
         } = parts;
         let allocation = &airframe.allocation;
+        let (airframes, maps) = (parts.airframes.iter(), parts.maps.iter());
+        let mut kinds: Vec<_> = airframes
+            .zip(maps)
+            .map(|(airframe, map)| kind(airframe, map))
+            .collect();
+        let first = kinds[0].clone();
+        if !airframe.is_unlike() {
+            kinds.clear();
+        }
         MixerTables {
             is_vertical: effectiveness.is_vertical(),
             units: unit_tables(airframe, effectiveness),
-            pair: map.pair,
-            singles: single_tables(airframe),
-            inverse: map.inverse.clone(),
-            throttle: map.throttle,
+            pair: first.pair,
+            singles: first.singles,
+            inverse: first.inverse,
+            throttle: throttle_table(airframe),
             corrections: parts.corrections.clone(),
-            row_scale: rows(airframe, effectiveness, parts.pair),
-            mean_square_slopes: parts.pair.mean_square_slopes().map(|mean| mean as f32),
+            row_scale: rows(airframe, effectiveness),
+            mean_square_slopes: first.mean_square_slopes,
             level_n: [0.0; 2],
             priorities: Priorities {
                 airmode: allocation.airmode,
@@ -172,6 +203,11 @@ impl MixerTables {
             },
             power_bias_nm_per_n: allocation.power_bias_nm_per_n as f32,
             closed_form,
+            kind_of: match kinds.is_empty() {
+                true => Vec::new(),
+                false => airframe.units.iter().map(|unit| unit.pair as u8).collect(),
+            },
+            kinds,
             tolerance: parts.tolerance,
         }
     }
@@ -187,7 +223,7 @@ impl MixerTables {
     }
 
     /// The tables as `mixer-rt` reads them.
-    pub fn view(&self) -> Tables<'_, QuantityTable, &InverseTable, Option<ClosedForm<'_>>> {
+    pub fn view(&self) -> Tables<'_, QuantityTable, &InverseTable, AnyMethod<'_>> {
         Tables {
             units: &self.units,
             pair: self.pair,
@@ -202,9 +238,46 @@ impl MixerTables {
             is_vertical: self.is_vertical,
             priorities: self.priorities,
             power_bias_nm_per_n: self.power_bias_nm_per_n,
-            closed_form: self.closed_form.as_ref().map(ClosedFormTable::view),
+            closed_form: AnyMethod {
+                closed_form: self.closed_form.as_ref().map(ClosedFormTable::view),
+                unlike: self.unlike(),
+            },
             tolerance: self.tolerance,
         }
+    }
+
+    /// The kinds of units as `mixer-rt` reads them.
+    pub(crate) fn unlike(&self) -> Option<Unlike<'_, QuantityTable, InverseTable>> {
+        let (kinds, of) = (self.kinds.as_slice(), self.kind_of.as_slice());
+        (!kinds.is_empty()).then_some(Unlike { kinds, of })
+    }
+
+    /// What a unit, by index, has in place of the tables' own maps, where units differ.
+    fn kind(&self, unit: usize) -> Option<&Kind<QuantityTable, InverseTable>> {
+        self.kinds.get(usize::from(*self.kind_of.get(unit)?))
+    }
+
+    /// The same tables where all units have this one of the pairs.
+    pub(crate) fn of_pair(&self, pair: usize) -> Self {
+        let Some(kind) = self.kinds.get(pair).cloned() else {
+            return self.clone();
+        };
+        MixerTables {
+            pair: kind.pair,
+            singles: kind.singles,
+            inverse: kind.inverse,
+            mean_square_slopes: kind.mean_square_slopes,
+            kinds: Vec::new(),
+            kind_of: Vec::new(),
+            ..self.clone()
+        }
+    }
+
+    /// Efforts `[f, Q]` of a unit, by index, at throttles `[u, l]`, N and N m at the reference voltage.
+    pub(crate) fn efforts_of(&self, unit: usize, throttles: [f32; 2]) -> [f32; 2] {
+        self.kind(unit)
+            .map_or(&self.pair, |kind| &kind.pair)
+            .efforts(throttles)
     }
 
     /// The same tables with another power bias, to compare with.
@@ -216,10 +289,10 @@ impl MixerTables {
         }
     }
 
-    /// Throttles `[u, l]` of a unit for its `efforts` (N, N m at the reference voltage), by the emitted
+    /// Throttles `[u, l]` of a unit of the first pair for its `efforts` (N, N m at the reference voltage), by the emitted
     /// inverse.
     pub fn throttles(&self, efforts: [f32; 2]) -> [f32; 2] {
-        (&self.inverse).throttles(&self.pair, &self.throttle, efforts)
+        self.inverse.throttles(&self.pair, &self.throttle, efforts)
     }
 
     /// Mixes with `mixer-rt`, operation by operation as the generated mixer does.
@@ -256,24 +329,27 @@ impl MixerTables {
     /// Throttles `[u, l]` of the units for the efforts of least norm at `[k_f, k_Q]`; `None` where some
     /// unit cannot give them.
     pub(crate) fn least_norm(&self, wrench: [f32; 4], factors: [f64; 2]) -> Option<Vec<[f32; 2]>> {
-        let one = |unit: &Unit| {
+        let one = |(index, unit): (usize, &Unit)| {
             let effort = |k: usize| -> f32 {
                 let parts = unit.allocation[k].iter().zip(wrench);
                 parts.map(|(share, asked)| share * asked).sum::<f32>() / factors[k] as f32
             };
             let wanted = [effort(0), effort(1)];
-            let throttles = self.throttles(wanted);
-            let given = self.pair.efforts(throttles);
+            let throttles = match self.kind(index) {
+                Some(kind) => kind.inverse.throttles(&kind.pair, &self.throttle, wanted),
+                None => self.throttles(wanted),
+            };
+            let given = self.efforts_of(index, throttles);
             let gives = |k: usize| (given[k] - wanted[k]).abs() <= self.tolerance.efforts[k];
             (gives(0) && gives(1)).then_some(throttles)
         };
-        self.units.iter().map(one).collect()
+        self.units.iter().enumerate().map(one).collect()
     }
 
     /// Bytes of the tables in flash.
     pub fn bytes(&self) -> usize {
         let view = self.view();
-        let parts: [&dyn Part; 14] = [
+        let parts: [&dyn Part; 15] = [
             &view.units,
             &view.pair,
             &view.singles,
@@ -286,7 +362,8 @@ impl MixerTables {
             &view.level_n,
             &view.priorities,
             &view.power_bias_nm_per_n,
-            &view.closed_form,
+            &view.closed_form.closed_form,
+            &view.closed_form.unlike,
             &view.tolerance,
         ];
         parts.into_iter().map(Part::bytes).sum()
@@ -294,7 +371,10 @@ impl MixerTables {
 
     /// Bytes of the inverse map's own constants.
     pub fn inverse_bytes(&self) -> usize {
-        self.inverse.bytes()
+        match self.kinds.as_slice() {
+            [] => self.inverse.bytes(),
+            kinds => kinds.iter().map(|kind| kind.inverse.bytes()).sum(),
+        }
     }
 }
 
@@ -304,6 +384,17 @@ fn pair_table(airframe: &Airframe) -> Pair<QuantityTable> {
     Pair {
         thrust: QuantityTable::new(pair.basis, &pair.thrust_n),
         torque: QuantityTable::new(pair.basis, &pair.torque_nm),
+    }
+}
+
+/// What a unit of an airframe of one pair gives.
+fn kind(airframe: &Airframe, map: &UnitMap) -> Kind<QuantityTable, InverseTable> {
+    let pair = PairMap::new(&airframe.pair, &airframe.throttle);
+    Kind {
+        pair: map.pair,
+        singles: single_tables(airframe),
+        inverse: map.inverse.clone(),
+        mean_square_slopes: pair.mean_square_slopes().map(|mean| mean as f32),
     }
 }
 

@@ -63,7 +63,7 @@ fn isae_x8_is_as_in_the_paper() {
     let signs: Vec<_> = airframe
         .units
         .iter()
-        .map(|unit| unit.spin_sign(airframe.pair.upper_spin))
+        .map(|unit| airframe.spin_sign(unit))
         .collect();
     assert_eq!(signs, [1.0, -1.0, 1.0, -1.0]);
     assert_eq!(airframe.units[1].position_m, [0.3182, -0.3182, 0.0]);
@@ -201,7 +201,7 @@ fn axes_are_normalised_and_ordered() {
     assert_eq!(airframe.allocation.axes, [Axis::Yaw, Axis::Thrust]);
     assert!(airframe.allocation.controls(Axis::Yaw) && !airframe.allocation.controls(Axis::Roll));
     assert_eq!(airframe.inverse.method, Method::Polynomial { degree: 9 });
-    assert_eq!(airframe.units[0].spin_sign(airframe.pair.upper_spin), -1.0);
+    assert_eq!(airframe.spin_sign(&airframe.units[0]), -1.0);
 }
 
 #[test]

@@ -41,6 +41,7 @@ use core::hint::black_box;
 
 use crate::layout::Tables;
 use crate::pair::{Inverse, Quantity};
+use closed_form::AllocationMethod;
 use frame::Frame;
 use unit::UnitState;
 
@@ -48,7 +49,7 @@ use unit::UnitState;
 /// which hold the rotors that turn. `factors` is `[k_f, k_Q]`. `is_whole` tells that all rotors turn. True
 /// where these are the throttles of least norm, with all rotors.
 #[inline(never)]
-pub(crate) fn allocate<P: Quantity, I: Inverse, S, const VERTICAL: bool>(
+pub(crate) fn allocate<P: Quantity, I: Inverse, S: AllocationMethod<P>, const VERTICAL: bool>(
     tables: &Tables<'_, P, I, S>,
     wrench: &[f32; 4],
     factors: [f32; 2],

@@ -1,9 +1,9 @@
 //! The tables of one airframe as a whole.
 
-use crate::allocate::closed_form::NoClosedForm;
+use crate::allocate::closed_form::{AllocationMethod, NoClosedForm};
 use crate::allocate::priorities::Priorities;
 use crate::conditions::Law;
-use crate::pair::{Pair, SingleRotor, ThrottleRange};
+use crate::pair::{Inverse, Kind, Pair, Quantity, SingleRotor, ThrottleRange};
 
 /// One coaxial unit's share of M and M+.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -87,4 +87,41 @@ pub struct Tables<'a, P, I, S = NoClosedForm> {
     pub closed_form: S,
     /// Largest errors of the mixer.
     pub tolerance: Tolerance,
+}
+
+/// What a unit, by index, has of its own. Where all are alike, these fold to the tables' one map.
+impl<P: Quantity, I: Inverse, S: AllocationMethod<P>> Tables<'_, P, I, S> {
+    #[inline(always)]
+    fn kind(&self, unit: usize) -> Option<&Kind<P, S::Inverse>> {
+        let unlike = self.closed_form.unlike()?;
+        unlike.kinds.get(usize::from(*unlike.of.get(unit)?))
+    }
+
+    /// The forward map of a unit.
+    #[inline(always)]
+    pub fn pair_of(&self, unit: usize) -> &Pair<P> {
+        self.kind(unit).map_or(&self.pair, |kind| &kind.pair)
+    }
+
+    /// The rotors alone.
+    #[inline(always)]
+    pub(crate) fn singles_of(&self, unit: usize) -> &[SingleRotor; 2] {
+        self.kind(unit).map_or(&self.singles, |kind| &kind.singles)
+    }
+
+    /// The mean squares of the slopes.
+    #[inline(always)]
+    pub(crate) fn slopes_of(&self, unit: usize) -> [f32; 2] {
+        self.kind(unit)
+            .map_or(self.mean_square_slopes, |kind| kind.mean_square_slopes)
+    }
+
+    /// Throttles for `efforts`, N and N m at the reference voltage.
+    #[inline(always)]
+    pub(crate) fn throttles_of(&self, unit: usize, efforts: [f32; 2]) -> [f32; 2] {
+        match self.kind(unit) {
+            None => self.inverse.throttles(&self.pair, &self.throttle, efforts),
+            Some(kind) => kind.inverse.throttles(&kind.pair, &self.throttle, efforts),
+        }
+    }
 }

@@ -84,7 +84,7 @@ impl<const CHANNELS: usize> Mix<CHANNELS> {
 /// # Errors
 /// A setpoint or voltage that is infinite or NaN: see [`SetpointError`].
 #[inline(always)]
-pub fn mix<const UNITS: usize, const CHANNELS: usize, P: Quantity, I: Inverse, S: AllocationMethod>(
+pub fn mix<const UNITS: usize, const CHANNELS: usize, P: Quantity, I: Inverse, S: AllocationMethod<P>>(
     tables: &Tables<'_, P, I, S>,
     setpoint: &Wrench,
     conditions: Conditions,
@@ -107,7 +107,7 @@ pub fn mix<const UNITS: usize, const CHANNELS: usize, P: Quantity, I: Inverse, S
 /// # Errors
 /// As [`mix`]; `throttle` is then as it was.
 #[inline(always)]
-pub fn mix_into<P: Quantity, I: Inverse, S: AllocationMethod, W: AsMut<[UnitState]>>(
+pub fn mix_into<P: Quantity, I: Inverse, S: AllocationMethod<P>, W: AsMut<[UnitState]>>(
     tables: &Tables<'_, P, I, S>,
     setpoint: &Wrench,
     conditions: Conditions,
@@ -126,7 +126,7 @@ type Mixed = Result<(Wrench, Saturation), SetpointError>;
 
 /// [`mix_into`] without a closed form, or with rotors out.
 #[inline(always)]
-fn mix_in_general<P: Quantity, I: Inverse, S: AllocationMethod>(
+fn mix_in_general<P: Quantity, I: Inverse, S: AllocationMethod<P>>(
     tables: &Tables<'_, P, I, S>,
     setpoint: &Wrench,
     conditions: Conditions,
@@ -164,7 +164,7 @@ fn mix_in_general<P: Quantity, I: Inverse, S: AllocationMethod>(
 
 /// [`mix_into`] in closed form; `None` where there is none, or a rotor is out.
 #[inline(always)]
-fn mix_in_closed_form<P: Quantity, I: Inverse, S: AllocationMethod>(
+fn mix_in_closed_form<P: Quantity, I: Inverse, S: AllocationMethod<P>>(
     tables: &Tables<'_, P, I, S>,
     setpoint: &Wrench,
     conditions: Conditions,

@@ -18,6 +18,6 @@ pub use crate::conditions::{Law, LawPiece};
 pub use crate::layout::{Tables, Tolerance, Unit};
 pub use crate::mix::{Sealed, mix, mix_into};
 pub use crate::pair::{
-    Biquadratic, Coefficients, Cubic, Inverse, Pair, PolynomialInverse, Quantity, Quartic, SingleRotor,
-    ThrottleRange, solve,
+    Biquadratic, Coefficients, Cubic, Inverse, Kind, Pair, PolynomialInverse, Quantity, Quartic, SingleRotor,
+    ThrottleRange, Unlike, solve,
 };

@@ -150,7 +150,7 @@ fn least_level_thrust(frame: &Frame, most: f64) -> f64 {
     let is_level = |f: f64| {
         (0..=STEPS).any(|k| {
             let q = at(k, -0.3 * torque, 0.3 * torque);
-            frame.physics.attains([f, q]) && frame.physics.attains([f, share * q])
+            frame.physics.attains(0, [f, q]) && frame.physics.attains(0, [f, share * q])
         })
     };
     let each = (0..=STEPS)

@@ -111,9 +111,9 @@ impl Oracle {
         health: Health,
         is_cut: bool,
     ) -> Self {
-        let pair = &physics.pair;
         let failed = |channel| is_out(health, channel);
         let sets = physics.channels.iter().enumerate().map(|(i, channels)| {
+            let pair = &physics.pairs[i];
             let efforts = match channels.map(failed) {
                 [false, false] if is_cut => cells(pair),
                 [false, false] => vec![bulging(pair, pair.border(SAMPLES))],
@@ -121,7 +121,7 @@ impl Oracle {
                 [true, false] => arcs(pair, |lower| [0.0, lower]),
                 [true, true] => vec![vec![[0.0; 2]]],
             };
-            let contribution = |throttles| physics.contribution(i, physics.given(throttles), factors);
+            let contribution = |throttles| physics.contribution(i, physics.given(i, throttles), factors);
             let pieces = efforts.into_iter();
             pieces
                 .map(|piece| piece.into_iter().map(contribution).collect())

@@ -17,7 +17,7 @@ fn effectiveness(airframe: &Airframe) -> Matrix4xX<f64> {
     let mut matrix = Matrix4xX::zeros(2 * n);
     for (i, unit) in airframe.units.iter().enumerate() {
         let [position, axis] = [unit.position_m, unit.axis].map(Vector3::from);
-        let spin = if unit.upper_spin == airframe.pair.upper_spin {
+        let spin = if unit.upper_spin == airframe.pair_of(unit).upper_spin {
             1.0
         } else {
             -1.0
@@ -30,8 +30,10 @@ fn effectiveness(airframe: &Airframe) -> Matrix4xX<f64> {
 
 /// The forward physics of one frame.
 pub struct Physics {
-    /// Thrust and torque of one unit.
+    /// Thrust and torque of one unit, of the first pair where units differ.
     pub pair: PairMap,
+    /// Those of each unit.
+    pub pairs: Vec<PairMap>,
     /// M, 4 x 2n: all thrusts, then all torques.
     pub matrix: Matrix4xX<f64>,
     /// M+, 2n x 4.
@@ -40,16 +42,20 @@ pub struct Physics {
     pub channels: Vec<[usize; 2]>,
     /// Of voltage and of density.
     corrections: [Option<Correction>; 2],
-    /// What the upper and the lower rotor give alone, where the file says it.
-    alone: [Option<RotorAlone>; 2],
+    /// What the upper and the lower rotor of each unit give alone, where the file says it.
+    alone: Vec<[Option<RotorAlone>; 2]>,
 }
 
 impl Physics {
     /// The physics of a compiled frame.
     pub fn new(compiled: &Compiled) -> Self {
         let airframe = &compiled.airframe;
+        let pairs = || airframe.units.iter().map(|unit| airframe.pair_of(unit));
         Physics {
             pair: PairMap::new(&airframe.pair, &airframe.throttle),
+            pairs: pairs()
+                .map(|pair| PairMap::new(pair, &airframe.throttle))
+                .collect(),
             matrix: effectiveness(airframe),
             pseudo_inverse: compiled.effectiveness.pseudo_inverse.clone(),
             channels: airframe
@@ -58,7 +64,9 @@ impl Physics {
                 .map(|unit| [unit.upper_channel, unit.lower_channel])
                 .collect(),
             corrections: [airframe.voltage.clone(), airframe.air.clone()],
-            alone: [airframe.pair.lower_out.clone(), airframe.pair.upper_out.clone()],
+            alone: pairs()
+                .map(|pair| [pair.lower_out.clone(), pair.upper_out.clone()])
+                .collect(),
         }
     }
 
@@ -133,33 +141,34 @@ impl Physics {
 
     /// The same under a correction.
     pub fn wrench_in(&self, throttle: &[f32], factors: [f64; 2]) -> [f64; 4] {
-        let efforts = self.channels.iter().map(|channels| {
+        let efforts = self.channels.iter().enumerate().map(|(unit, channels)| {
             let throttles = channels.map(|channel| f64::from(throttle[channel]));
-            self.given(throttles)
+            self.given(unit, throttles)
         });
         self.wrench_of(efforts, factors)
     }
 
     /// What a unit gives: a rotor below idle is out.
-    pub(crate) fn given(&self, throttles: [f64; 2]) -> [f64; 2] {
+    pub(crate) fn given(&self, unit: usize, throttles: [f64; 2]) -> [f64; 2] {
         let idle = self.pair.range()[0];
         let is_out = throttles.map(|throttle| throttle < 0.999 * idle);
-        match (is_out, &self.alone) {
+        match (is_out, &self.alone[unit]) {
             ([false, true], [Some(alone), _]) => alone.efforts(throttles[0]),
             ([true, false], [_, Some(alone)]) => alone.efforts(throttles[1]),
-            _ => self.pair.efforts(throttles),
+            _ => self.pairs[unit].efforts(throttles),
         }
     }
 
     /// The largest `[roll, pitch, yaw, thrust]` at the reference voltage, N m and N: all units at
     /// their best, whatever the other axes lose.
     pub fn authority(&self) -> [f64; 4] {
-        let [f, q] = self.pair.scale();
+        let scales: Vec<[f64; 2]> = self.pairs.iter().map(PairMap::scale).collect();
         let n = self.units();
         std::array::from_fn(|axis| {
-            (0..n)
-                .map(|i| self.matrix[(axis, i)].abs() * f + self.matrix[(axis, n + i)].abs() * q)
-                .sum()
+            let most = |(i, [f, q]): (usize, &[f64; 2])| {
+                self.matrix[(axis, i)].abs() * f + self.matrix[(axis, n + i)].abs() * q
+            };
+            scales.iter().enumerate().map(most).sum()
         })
     }
 
@@ -170,12 +179,11 @@ impl Physics {
         let per = self
             .authority()
             .map(|authority| if authority > 0.0 { 1.0 / authority } else { 0.0 });
-        let border: Vec<[f64; 2]> = self
-            .pair
-            .border(64)
-            .into_iter()
-            .map(|t| self.pair.efforts(t))
-            .collect();
+        let border = |pair: &PairMap| -> Vec<[f64; 2]> {
+            let border = pair.border(64).into_iter();
+            border.map(|t| pair.efforts(t)).collect()
+        };
+        let borders: Vec<Vec<[f64; 2]>> = self.pairs.iter().map(border).collect();
         let best = (0..n).map(|i| {
             let gain = |column: usize| -> f64 {
                 (0..4)
@@ -184,16 +192,17 @@ impl Physics {
             };
             let (by_f, by_q) = (factors[0] * gain(i), factors[1] * gain(n + i));
             let value = |[f, q]: &[f64; 2]| by_f * f + by_q * q;
-            let best = border.iter().max_by(|a, b| value(a).total_cmp(&value(b)));
+            let best = borders[i].iter().max_by(|a, b| value(a).total_cmp(&value(b)));
             best.copied().unwrap_or_default()
         });
         self.wrench_of(best, factors)
     }
 
-    /// True where some throttles within the range give the efforts `[f, Q]` at the reference
+    /// True where some throttles within the range give a unit's efforts `[f, Q]` at the reference
     /// voltage: Newton steps, clamped, from the middle and the corners of the range.
-    pub fn attains(&self, efforts: [f64; 2]) -> bool {
-        let [low, high] = self.pair.range();
+    pub fn attains(&self, unit: usize, efforts: [f64; 2]) -> bool {
+        let pair = &self.pairs[unit];
+        let [low, high] = pair.range();
         let middle = 0.5 * (low + high);
         let starts = [
             [middle, middle],
@@ -202,13 +211,13 @@ impl Physics {
             [high, low],
             [high, high],
         ];
-        let scale = self.pair.scale();
+        let scale = pair.scale();
         starts.into_iter().any(|start| {
             let mut throttles = start;
             for _ in 0..STEPS {
-                throttles = self.pair.newton(throttles, efforts);
+                throttles = pair.newton(throttles, efforts);
             }
-            let given = self.pair.efforts(throttles);
+            let given = pair.efforts(throttles);
             (0..2).all(|k| (given[k] - efforts[k]).abs() <= 1e-9 * scale[k])
         })
     }
@@ -222,7 +231,7 @@ impl Physics {
                 .sum::<f64>()
                 / factor
         };
-        (0..n).all(|i| self.attains([effort(i, factors[0]), effort(n + i, factors[1])]))
+        (0..n).all(|i| self.attains(i, [effort(i, factors[0]), effort(n + i, factors[1])]))
     }
 
     /// The throttle at `share` of the allowed range, rounded into it.

@@ -31,6 +31,8 @@ keys! { TABLE = "[layout]":
         "Of the first unit's upper rotor. They alternate for an even number of units and turn alike for an odd one.";
     SPINS "spins" = "[\"cw\", \"ccw\", \"cw\", \"ccw\"]", Kind::Words(&Spin::WORDS),
         "Of every unit's upper rotor, instead of first_spin.";
+    PAIRS "pairs" = "[\"front\", \"rear\", \"rear\", \"front\"]", Kind::Texts,
+        "With several `[[pair]]`: the name of every unit's.";
     CHANNELS "channels" = "[[0, 4], [1, 5], [2, 6], [3, 7]]", Kind::ListOfChannels,
         "Outputs of the upper and of the lower rotor of every unit; k and n + k without it.";
 }
@@ -58,16 +60,18 @@ pub(super) fn read(table: &mut Fields<'_, '_>, bench_spin: Option<Spin>) -> Layo
     let first_angle_deg = table.number(&FIRST_ANGLE_DEG);
     let spins = spins(table, units, bench_spin);
     let channels = channels(table, units);
+    let pairs = pairs(table, units);
     let expanded = || {
         let (count, arm_m, first_deg) = (units?, arm_m?, first_angle_deg?);
-        let units = (0..count).zip(spins?).zip(channels?);
-        let units = units.map(|((k, spin), channels)| {
+        let units = (0..count).zip(spins?).zip(channels?).zip(pairs?);
+        let units = units.map(|(((k, spin), channels), pair)| {
             let [x, y] = on_circle(arm_m, first_deg + 360.0 * k as f64 / count as f64);
             unit::Written {
                 position_m: Some([x, y, 0.0]),
                 axis: Some(unit::UPWARD),
                 upper_spin: Some(spin),
                 channels: Some(channels),
+                pair,
             }
         });
         Some(units.collect())
@@ -167,6 +171,15 @@ fn channels(table: &mut Fields<'_, '_>, units: Option<usize>) -> Option<Vec<[usi
             .map(|pair| pair.into_inner().map(Spanned::into_inner))
             .collect(),
     )
+}
+
+fn pairs(table: &mut Fields<'_, '_>, units: Option<usize>) -> Option<Vec<Option<String>>> {
+    let Some(field) = table.read::<Vec<Spanned<String>>>(&PAIRS) else {
+        return Some(vec![None; units?]);
+    };
+    same_count(table, &PAIRS, field.get_ref().len(), units)?;
+    let names = field.into_inner().into_iter();
+    Some(names.map(|name| Some(name.into_inner())).collect())
 }
 
 fn same_count(

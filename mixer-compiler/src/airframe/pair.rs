@@ -18,6 +18,8 @@ const STRONGER_WORDS: [&str; 2] = ["upper", "lower"];
 const TERMS: [usize; 2] = [8, 14];
 
 keys! { TABLE = "[pair]":
+    NAME "name" = "\"front\"", Kind::Text,
+        "With several `[[pair]]`: the name by which a unit has it.";
     BASIS "basis" = "\"biquadratic\"", Kind::Word(&Basis::WORDS),
         "Terms of the polynomials in the upper throttle u and the lower throttle l. biquadratic: u2l2, u2l, u2, ul2, ul, u, l2, l; cubic: u3, u2l, ul2, l3, u2, ul, l2, u, l; quartic: u4, u3l, u2l2, ul3, l4, then as cubic.".required();
     THRUST_N "thrust_n" = "[5.2075, -2.1892, ..]", Kind::Numbers(TERMS),
@@ -57,7 +59,11 @@ impl Pair {
     /// Whose pair it is, where it is not the airframe's own, as a line of saved files says it.
     pub fn borrowed(&self) -> Option<String> {
         let from = &self.borrowed_from;
-        (!from.is_empty()).then(|| format!("the pair is that of {from}, not of this vehicle"))
+        let pair = match self.name.as_str() {
+            "" => "pair".to_owned(),
+            name => format!("pair \"{name}\""),
+        };
+        (!from.is_empty()).then(|| format!("the {pair} is that of {from}, not of this vehicle"))
     }
 }
 
@@ -95,6 +101,8 @@ impl Spin {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Pair {
+    /// The name by which units have it; empty where the file has none.
+    pub name: String,
     /// Terms of both polynomials.
     pub basis: Basis,
     /// Coefficients of the thrust, N, one per term of [`Basis::exponents`], each within 1e6.
@@ -125,6 +133,7 @@ pub struct Pair {
 
 /// The pair, and its bench's spin also where other keys are at fault.
 pub(super) fn read(table: &mut Fields<'_, '_>, throttle: Option<&Throttle>) -> (Option<Pair>, Option<Spin>) {
+    let name = table.read::<String>(&NAME).map(Spanned::into_inner);
     let basis = table.word(&BASIS, &Basis::ALL);
     let [thrust_n, torque_nm] = [&THRUST_N, &TORQUE_NM].map(|key| coefficients(table, key, basis));
     let upper_spin = table.word(&UPPER_SPIN, &Spin::ALL);
@@ -139,6 +148,7 @@ pub(super) fn read(table: &mut Fields<'_, '_>, throttle: Option<&Throttle>) -> (
     let bench_v = table.array(&BENCH_V);
     let pair = || {
         Some(Pair {
+            name: name.unwrap_or_default(),
             basis: basis?,
             thrust_n: thrust_n?,
             torque_nm: torque_nm?,
@@ -154,6 +164,24 @@ pub(super) fn read(table: &mut Fields<'_, '_>, throttle: Option<&Throttle>) -> (
         })
     };
     (pair(), upper_spin)
+}
+
+/// Writes all pairs in one basis: that of all, or the quartic, which has the terms of the others.
+pub(super) fn unite(pairs: &mut [Pair]) {
+    if pairs.windows(2).all(|two| two[0].basis == two[1].basis) {
+        return;
+    }
+    for pair in pairs {
+        let written = pair.basis.exponents();
+        for terms in [&mut pair.thrust_n, &mut pair.torque_nm] {
+            let value = |exponents| {
+                let at = written.iter().position(|known| known == exponents);
+                at.map_or(0.0, |at| terms[at])
+            };
+            *terms = Basis::Quartic.exponents().iter().map(value).collect();
+        }
+        pair.basis = Basis::Quartic;
+    }
 }
 
 fn coefficients(table: &mut Fields<'_, '_>, key: &'static Key, basis: Option<Basis>) -> Option<Vec<f64>> {

@@ -59,7 +59,7 @@ impl Power {
 const STEPS: u32 = 64;
 
 pub(super) fn read(table: &mut Fields<'_, '_>, throttle: Option<&Throttle>) -> Option<Power> {
-    let key = "pair.power.power_w";
+    let key = table.key_path(POWER_W.name);
     let terms = format!("the terms are {}, 1, in this order", Basis::Quartic.terms());
     let what = ("a power map", POWER_TERMS);
     let power_w = limits::coefficients(table, &POWER_W, what, |_| terms.clone())?;

@@ -3,7 +3,7 @@
 use super::pair::Spin;
 use crate::diagnostic::{Code, Diagnostic, number, rounded};
 use crate::spec::keys::{Kind, keys};
-use crate::spec::{Fields, Places, place_in};
+use crate::spec::{Fields, Places, Spanned, place_in};
 
 keys! { TABLE = "[[unit]]":
     POSITION_M "position_m" = "[0.3182, 0.3182, 0.0]", Kind::Numbers([3, 3]),
@@ -12,6 +12,8 @@ keys! { TABLE = "[[unit]]":
         "How this unit's upper rotor turns, seen from above.".required();
     CHANNELS "channels" = "[0, 4]", Kind::Channels,
         "Outputs of the upper and of the lower rotor; all units together have 0 to 2n - 1.".required();
+    PAIR "pair" = "\"front\"", Kind::Text,
+        "Name of its `[[pair]]`, where there are several.";
     AXIS "axis" = "[0.0, 0.0, -1.0]", Kind::Numbers([3, 3]),
         "Unit vector of the thrust, straight up without it.";
 }
@@ -45,11 +47,13 @@ pub struct Unit {
     pub upper_channel: usize,
     /// Output that drives the lower rotor.
     pub lower_channel: usize,
+    /// Where its pair stands in [`super::Airframe::pairs`].
+    pub pair: usize,
 }
 
 impl Unit {
     /// Sign s of the unit's torque in yaw: +1 where its upper rotor spins as on the bench, else -1.
-    pub fn spin_sign(&self, pair_upper_spin: Spin) -> f64 {
+    pub(super) fn spin_sign(&self, pair_upper_spin: Spin) -> f64 {
         if self.upper_spin == pair_upper_spin {
             1.0
         } else {
@@ -65,6 +69,8 @@ pub(super) struct Written {
     pub(super) upper_spin: Option<Spin>,
     /// Outputs of the upper and of the lower rotor.
     pub(super) channels: Option<[usize; 2]>,
+    /// The name of its pair.
+    pub(super) pair: Option<String>,
 }
 
 pub(super) fn read(table: &mut Fields<'_, '_>) -> Written {
@@ -72,6 +78,7 @@ pub(super) fn read(table: &mut Fields<'_, '_>) -> Written {
         position_m: position(table),
         upper_spin: table.word(&UPPER_SPIN, &Spin::ALL),
         channels: table.array(&CHANNELS),
+        pair: table.read::<String>(&PAIR).map(Spanned::into_inner),
         axis: axis(table),
     }
 }
@@ -126,8 +133,13 @@ fn axis(table: &mut Fields<'_, '_>) -> Option<[f64; 3]> {
     table.refuse(&AXIS, Code::AxisNotUpward, message, label, help)
 }
 
-/// Checks the units together, and gives them where all are complete.
-pub(super) fn check(units: &[Written], places: &Places, faults: &mut Vec<Diagnostic>) -> Option<Vec<Unit>> {
+/// Checks the units together, and gives them where all are complete; `pairs` are the names of the file's.
+pub(super) fn check(
+    units: &[Written],
+    pairs: &[String],
+    places: &Places,
+    faults: &mut Vec<Diagnostic>,
+) -> Option<Vec<Unit>> {
     if units.len() > MOST_UNITS {
         let key = format!("unit[{MOST_UNITS}]");
         let message = format!("{} units are more than {MOST_UNITS}", units.len());
@@ -137,7 +149,8 @@ pub(super) fn check(units: &[Written], places: &Places, faults: &mut Vec<Diagnos
     }
     check_places(units, places, faults);
     check_channels(units, places, faults);
-    let complete = |unit: &Written| {
+    let pairs = check_pairs(units, pairs, places, faults);
+    let complete = |(unit, pair): (&Written, Option<usize>)| {
         let [upper_channel, lower_channel] = unit.channels?;
         Some(Unit {
             position_m: unit.position_m?,
@@ -145,9 +158,116 @@ pub(super) fn check(units: &[Written], places: &Places, faults: &mut Vec<Diagnos
             upper_spin: unit.upper_spin?,
             upper_channel,
             lower_channel,
+            pair: pair?,
         })
     };
-    units.iter().map(complete).collect()
+    units.iter().zip(pairs).map(complete).collect()
+}
+
+/// Every unit has one of the file's pairs, by name where there are several, and every pair a unit.
+fn check_pairs(
+    units: &[Written],
+    names: &[String],
+    places: &Places,
+    faults: &mut Vec<Diagnostic>,
+) -> Vec<Option<usize>> {
+    let mut fault = |code, key: String, message: String, label: &str, help: String| {
+        let fault = Diagnostic::new(code, key.as_str(), place_in(places, &key), message);
+        faults.push(fault.label(label).help(help));
+    };
+    let listed: Vec<String> = names.iter().map(|name| format!("\"{name}\"")).collect();
+    let (listed, is_one) = (listed.join(", "), names.len() == 1);
+    let is_clear =
+        (0..names.len()).all(|k| is_one || !names[k].is_empty() && !names[..k].contains(&names[k]));
+    for (k, name) in names.iter().enumerate().filter(|_| !is_one) {
+        let same = names.iter().position(|other| other == name);
+        if name.is_empty() {
+            let (message, help) = (
+                format!("`pair[{k}]` has no name"),
+                "add name = \"..\", by which units have it",
+            );
+            fault(
+                Code::MissingKey,
+                format!("pair[{k}]"),
+                message,
+                "one of several",
+                help.to_owned(),
+            );
+        } else if same != Some(k) {
+            let message = format!("two `[[pair]]` are called \"{name}\"");
+            fault(
+                Code::Conflict,
+                format!("pair[{k}].name"),
+                message,
+                "the second one",
+                "rename one of them".to_owned(),
+            );
+        } else if is_clear
+            && units.iter().all(|unit| unit.pair.is_some())
+            && !units.iter().any(|unit| unit.pair.as_ref() == Some(name))
+        {
+            let message = format!("no unit has the pair \"{name}\"");
+            let help =
+                format!("write pair = \"{name}\" in a `[[unit]]` or in `pairs` of `[layout]`, or remove it");
+            fault(
+                Code::Conflict,
+                format!("pair[{k}].name"),
+                message,
+                "not used",
+                help,
+            );
+        }
+    }
+    let is_silent = units.iter().all(|unit| unit.pair.is_none());
+    if places.contains_key("layout") && is_silent && names.len() > 1 && is_clear {
+        let message = "`layout` does not say which unit has which pair".to_owned();
+        let help = format!("add pairs = [..] with one of {listed} for each unit, clockwise from the first");
+        fault(Code::MissingKey, "layout".to_owned(), message, "no `pairs`", help);
+        return vec![None; units.len()];
+    }
+    let find = |(k, unit): (usize, &Written)| {
+        let found = match &unit.pair {
+            // Pairs at fault are told of.
+            _ if names.is_empty() || !is_clear => return None,
+            None => is_one.then_some(0),
+            Some(name) => names.iter().position(|known| known == name && !name.is_empty()),
+        };
+        if found.is_none() {
+            let key = match places.contains_key("layout.pairs") {
+                true => format!("layout.pairs[{k}]"),
+                false => format!("unit[{k}].pair"),
+            };
+            let (code, message, label, help) = match &unit.pair {
+                None => {
+                    let message = format!("`unit[{k}]` has no pair, and the file has several");
+                    (
+                        Code::MissingKey,
+                        message,
+                        "which one?",
+                        format!("write pair = one of {listed}"),
+                    )
+                }
+                Some(name) if is_one && names[0].is_empty() => {
+                    let message =
+                        format!("`unit[{k}]` has the pair \"{name}\", and the file's pair has no name");
+                    let help = format!("remove it, or write name = \"{name}\" under `[pair]`");
+                    (Code::UnknownWord, message, "no such pair", help)
+                }
+                Some(name) => {
+                    let message = format!("`unit[{k}]` has the pair \"{name}\", of which the file has none");
+                    (
+                        Code::UnknownWord,
+                        message,
+                        "no such pair",
+                        format!("write one of {listed}"),
+                    )
+                }
+            };
+            fault(code, key, message, label, help);
+        }
+        found
+    };
+    units.iter().enumerate().map(find).collect()
 }
 
 /// No two units are in one place.

@@ -44,6 +44,9 @@ impl Layout {
         let served = [Axis::Roll, Axis::Pitch].map(|axis| airframe.allocation.controls(axis));
         let axes = [Vector3::x(), Vector3::y()].into_iter().zip(served);
         let free: Vec<_> = axes.filter(|(_, served)| !served).map(|(axis, _)| axis).collect();
+        if airframe.is_unlike() {
+            return Err("units have different pairs");
+        }
         if !effectiveness.is_vertical() {
             return Err("thrust axes are tilted");
         }

@@ -108,8 +108,18 @@ pub(crate) fn level(airframe: &Airframe, tables: &MixerTables) -> [f32; 2] {
 
 /// The ends of the longest run of thrusts that are delivered, N.
 fn longest_run(tables: &MixerTables, is_delivered: &dyn Fn(f32) -> bool) -> Option<[f32; 2]> {
-    let lift: f32 = tables.units.iter().map(|unit| unit.effectiveness[0][3]).sum();
-    let most = lift * tables.pair.efforts([tables.throttle.max; 2])[0];
+    let full = |unit| tables.efforts_of(unit, [tables.throttle.max; 2])[0];
+    let units = || {
+        tables
+            .units
+            .iter()
+            .map(|unit| unit.effectiveness[0][3])
+            .enumerate()
+    };
+    let most = match tables.kinds.is_empty() {
+        true => units().map(|(_, lift)| lift).sum::<f32>() * full(0),
+        false => units().map(|(unit, lift)| lift * full(unit)).sum(),
+    };
     let at = |step: usize| most * step as f32 / STEPS as f32;
     let mut best = 0..0;
     let mut first = 0;

@@ -36,13 +36,18 @@ const fn seed(degree: u8, steps: u8) -> Evaluator {
 }
 
 impl Evaluator {
-    /// The forms that a method allows, by their cost: the cheapest, and the others.
-    pub(crate) fn candidates(method: Method) -> (Evaluator, &'static [Evaluator]) {
-        let [cheapest, others @ ..] = &SEEDS;
+    /// The forms that a method allows, by their cost: the cheapest, and the others. `least` is that of the cheapest of
+    /// [`SEEDS`] that will do.
+    pub(crate) fn candidates(method: Method, least: usize) -> (Evaluator, &'static [Evaluator]) {
         match method {
-            Method::Auto => (*cheapest, others),
+            Method::Auto => (SEEDS[least], &SEEDS[least + 1..]),
             Method::Polynomial { degree } => (Evaluator::Polynomial { degree: degree as u8 }, &[]),
         }
+    }
+
+    /// Its place among [`SEEDS`]; 0 of the paper's.
+    pub(crate) fn place(self) -> usize {
+        SEEDS.iter().position(|&seed| seed == self).unwrap_or(0)
     }
 
     /// Total degree of the polynomial.
@@ -104,7 +109,7 @@ mod tests {
     #[test]
     fn candidates_stand_in_the_order_of_their_cost() {
         for basis in Basis::ALL {
-            let (cheapest, others) = Evaluator::candidates(Method::Auto);
+            let (cheapest, others) = Evaluator::candidates(Method::Auto, 0);
             let candidates = std::iter::once(&cheapest).chain(others);
             let costs: Vec<u32> = candidates
                 .map(|evaluator| evaluator.cost(basis).unwrap_or_else(|| panic!("{evaluator:?}")))

@@ -46,6 +46,12 @@ impl InverseTable {
 
 impl Inverse for &InverseTable {
     fn throttles<P: Quantity>(&self, pair: &Pair<P>, range: &ThrottleRange, efforts: [f32; 2]) -> [f32; 2] {
+        (**self).throttles(pair, range, efforts)
+    }
+}
+
+impl Inverse for InverseTable {
+    fn throttles<P: Quantity>(&self, pair: &Pair<P>, range: &ThrottleRange, efforts: [f32; 2]) -> [f32; 2] {
         match self.evaluator.steps() {
             0 => self.with::<0>().throttles(pair, range, efforts),
             1 => self.with::<1>().throttles(pair, range, efforts),

@@ -15,7 +15,7 @@
 
 use nalgebra::{DMatrix, Matrix4xX, MatrixXx4};
 
-use super::PairMap;
+use super::pair_map::scales;
 use super::pseudo_inverse::PseudoInverse;
 use crate::airframe::{Airframe, Axis};
 use crate::diagnostic::{Code, Diagnostic};
@@ -54,10 +54,14 @@ impl Effectiveness {
         let rows = DMatrix::from_fn(served.len(), 2 * n, |row, column| {
             matrix[(served[row] as usize, column)]
         });
-        let map = PairMap::new(&airframe.pair, &airframe.throttle);
+        let scales = scales(airframe, [1.0; 2]);
         // A map without thrust or torque is refused elsewhere.
-        let [thrust, torque] = map.scale().map(|size| if size > 0.0 { size } else { 1.0 });
-        let sizes = [vec![thrust; n], vec![torque; n]].concat();
+        let size = |k: usize| {
+            scales
+                .iter()
+                .map(move |scale| if scale[k] > 0.0 { scale[k] } else { 1.0 })
+        };
+        let sizes: Vec<f64> = size(0).chain(size(1)).collect();
         let inverse =
             PseudoInverse::new(&rows, &sizes).map_err(|lost| vec![deficiency(airframe, &served, &lost)])?;
         let is_accurate = inverse.residual <= LARGEST_RESIDUAL;
@@ -76,11 +80,12 @@ impl Effectiveness {
         })
     }
 
-    /// The most that units with efforts up to these sizes (N, N m) give on an axis, N m or N.
-    pub fn largest(&self, axis: usize, [f, q]: [f64; 2]) -> f64 {
+    /// The most that units with efforts up to these sizes each (N, N m) give on an axis, N m or N.
+    pub fn largest(&self, axis: usize, sizes: &[[f64; 2]]) -> f64 {
         let row = self.matrix.row(axis);
         let n = self.matrix.ncols() / 2;
-        (0..n).map(|i| row[i].abs() * f + row[n + i].abs() * q).sum()
+        let most = |(i, [f, q]): (usize, &[f64; 2])| row[i].abs() * f + row[n + i].abs() * q;
+        sizes.iter().enumerate().map(most).sum()
     }
 
     /// True where all axes are vertical: thrusts give no yaw, torques nothing else.
@@ -104,7 +109,7 @@ fn matrix(airframe: &Airframe) -> Matrix4xX<f64> {
     let mut matrix = Matrix4xX::zeros(2 * n);
     for (i, unit) in airframe.units.iter().enumerate() {
         let ([x, y, z], [ax, ay, az]) = (unit.position_m, unit.axis);
-        let sign = unit.spin_sign(airframe.pair.upper_spin);
+        let sign = airframe.spin_sign(unit);
         let by_thrust = [y * az - z * ay, z * ax - x * az, x * ay - y * ax, -az];
         let by_torque = [-sign * ax, -sign * ay, -sign * az, 0.0];
         for axis in 0..4 {

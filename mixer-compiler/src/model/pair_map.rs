@@ -1,7 +1,7 @@
 //! The forward map of one unit in f64, with its Jacobian: what inverses are fitted to and checked
 //! against.
 
-use crate::airframe::{Basis, POWERS, Pair, Throttle};
+use crate::airframe::{Airframe, Basis, POWERS, Pair, Throttle};
 
 /// Thrust and torque of one unit at the reference voltage (eq. (1)).
 #[derive(Clone, Debug)]
@@ -20,6 +20,16 @@ struct Slopes {
     value: [f64; 2],
     by_u: [f64; 2],
     by_l: [f64; 2],
+}
+
+/// The largest thrust (N) and torque (N m) of each unit at `[k_f, k_Q]`.
+pub fn scales(airframe: &Airframe, factors: [f64; 2]) -> Vec<[f64; 2]> {
+    let scale = |pair| PairMap::new(pair, &airframe.throttle).scale();
+    let scales: Vec<[f64; 2]> = airframe.pairs().map(scale).collect();
+    let units = airframe.units.iter();
+    units
+        .map(|unit| [0, 1].map(|k| factors[k] * scales[unit.pair][k]))
+        .collect()
 }
 
 impl PairMap {

@@ -9,7 +9,7 @@ use crate::airframe::{Airframe, Unit};
 pub struct Physics<'a> {
     /// The airframe.
     pub airframe: &'a Airframe,
-    /// Its pair.
+    /// Its pair, the first one where units differ.
     pub map: &'a PairMap,
 }
 
@@ -29,7 +29,7 @@ impl Physics<'_> {
             let [f, q] = [factors[0] * efforts[0], factors[1] * efforts[1]];
             let ([x, y, z], axis) = (unit.position_m, unit.axis);
             let [fx, fy, fz] = axis.map(|a| f * a);
-            let reaction = -unit.spin_sign(self.airframe.pair.upper_spin) * q;
+            let reaction = -self.airframe.spin_sign(unit) * q;
             wrench[0] += y * fz - z * fy + reaction * axis[0];
             wrench[1] += z * fx - x * fz + reaction * axis[1];
             wrench[2] += x * fy - y * fx + reaction * axis[2];
@@ -43,17 +43,19 @@ impl Physics<'_> {
     pub fn efforts<T: Copy + Into<f64>>(&self, unit: &Unit, throttle: &[T], health: Health) -> [f64; 2] {
         let channels = [unit.upper_channel, unit.lower_channel];
         let [u, l] = channels.map(|channel| throttle[channel].into());
-        let pair = &self.airframe.pair;
+        let pair = self.airframe.pair_of(unit);
+        let own = (unit.pair != 0).then(|| PairMap::new(pair, &self.airframe.throttle));
+        let map = own.as_ref().unwrap_or(self.map);
         match channels.map(|channel| health.has_failed(channel as u8)) {
-            [false, false] => self.map.efforts([u, l]),
+            [false, false] => map.efforts([u, l]),
             [true, true] => [0.0; 2],
             [false, true] => match &pair.lower_out {
                 Some(alone) => alone.efforts(u),
-                None => self.map.efforts([u, 0.0]),
+                None => map.efforts([u, 0.0]),
             },
             [true, false] => match &pair.upper_out {
                 Some(alone) => alone.efforts(l),
-                None => self.map.efforts([0.0, l]),
+                None => map.efforts([0.0, l]),
             },
         }
     }

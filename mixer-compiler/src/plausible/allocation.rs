@@ -20,7 +20,8 @@ fn furthest(facts: &Facts<'_>, effectiveness: &Effectiveness, sign: f64) -> [f64
         [sign * on(Axis::Yaw), on(Axis::Thrust)]
     };
     (0..units).fold([0.0; 2], |[yaw, thrust], unit| {
-        let given = facts.border.iter().map(|efforts| give(unit, efforts));
+        let border = &facts.borders[facts.airframe.units[unit].pair];
+        let given = border.iter().map(|efforts| give(unit, efforts));
         let [y, t] = given.max_by(|a, b| a[0].total_cmp(&b[0])).unwrap_or_default();
         [yaw + y, thrust + t]
     })
@@ -76,10 +77,10 @@ pub(super) fn yaw(facts: &Facts<'_>) -> Vec<Rule> {
     ]
 }
 
-/// A bias that the pair cannot give at half of its largest thrust, about where vehicles hover; and a
-/// bias on a frame whose upper rotors all turn alike.
+const POWER_BIAS: &str = "allocation.power_bias_nm_per_n";
+
+/// A bias that the pair cannot give at half of its largest thrust, about where vehicles hover.
 pub(super) fn power_bias(facts: &Facts<'_>) -> Vec<Rule> {
-    const KEY: &str = "allocation.power_bias_nm_per_n";
     let airframe = facts.airframe;
     let bias = airframe.allocation.power_bias_nm_per_n;
     if bias == 0.0 {
@@ -90,6 +91,25 @@ pub(super) fn power_bias(facts: &Facts<'_>) -> Vec<Rule> {
     let [least, most] = torques(facts, thrust);
     let end = if torque < least { least } else { most };
     let [torque_nm, thrust_n, end_nm, limit] = [torque, thrust, end, end / thrust].map(rounded);
+    let rule = Rule::within(Code::PowerBiasBeyond, POWER_BIAS, torque, [least, most]);
+    vec![rule.says(
+        format!(
+            "a power bias of {} N m per N is {torque_nm} N m at {thrust_n} N, half of a unit's largest thrust, where \
+             the pair gives at most {end_nm} N m",
+            number(bias)
+        ),
+        "never wholly available",
+        format!("the limit there is {limit} N m per N; `cargo mixer identify` finds what saves power"),
+    )]
+}
+
+/// A bias on a frame whose upper rotors all turn alike.
+pub(super) fn idle_power_bias(facts: &Facts<'_>) -> Vec<Rule> {
+    let airframe = facts.airframe;
+    let bias = airframe.allocation.power_bias_nm_per_n;
+    if bias == 0.0 {
+        return Vec::new();
+    }
     let bias = number(bias);
     let why = match airframe.units.len() {
         1 => "the only unit has none to cancel its torque".to_owned(),
@@ -98,15 +118,12 @@ pub(super) fn power_bias(facts: &Facts<'_>) -> Vec<Rule> {
         }
     };
     vec![
-        Rule::within(Code::PowerBiasBeyond, KEY, torque, [least, most]).says(
-            format!(
-                "a power bias of {bias} N m per N is {torque_nm} N m at {thrust_n} N, half of a unit's largest thrust, where \
-                 the pair gives at most {end_nm} N m"
-            ),
-            "never wholly available",
-            format!("the limit there is {limit} N m per N; `cargo mixer identify` finds what saves power"),
-        ),
-        Rule::holds(Code::PowerBiasIdle, KEY, airframe.power_bias_share() > NO_SHARE).says(
+        Rule::holds(
+            Code::PowerBiasIdle,
+            POWER_BIAS,
+            airframe.power_bias_share() > NO_SHARE,
+        )
+        .says(
             format!("a power bias of {bias} N m per N saves nothing: {why}"),
             "no effect in hover",
             "remove it, or let half of the upper rotors turn the other way",
@@ -116,9 +133,9 @@ pub(super) fn power_bias(facts: &Facts<'_>) -> Vec<Rule> {
 
 /// Least and most torque of a unit at a thrust, N m, by the border of its attainable set.
 fn torques(facts: &Facts<'_>, thrust: f64) -> [f64; 2] {
-    let next = facts.border.iter().cycle().skip(1);
+    let next = facts.borders[0].iter().cycle().skip(1);
     let mut range = [f64::INFINITY, f64::NEG_INFINITY];
-    for ([f0, q0], [f1, q1]) in facts.border.iter().zip(next) {
+    for ([f0, q0], [f1, q1]) in facts.borders[0].iter().zip(next) {
         if (f0 - thrust) * (f1 - thrust) <= 0.0 && f1 != f0 {
             let q = q0 + (q1 - q0) * (thrust - f0) / (f1 - f0);
             range = [range[0].min(q), range[1].max(q)];

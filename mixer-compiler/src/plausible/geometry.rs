@@ -4,6 +4,7 @@ use super::rule::{Facts, Rule};
 use super::symmetry;
 use crate::airframe::Axis;
 use crate::diagnostic::{Code, number, rounded};
+use crate::model::scales;
 
 /// Units of the largest frames whose costs were counted.
 const MOST_COUNTED_UNITS: usize = 8;
@@ -132,7 +133,12 @@ pub(super) fn centre_of_gravity(facts: &Facts<'_>) -> Vec<Rule> {
     let (Some([_, ceiling]), true) = (facts.thrust_range_n, counts != [false; 2]) else {
         return Vec::new();
     };
-    let whole = units.iter().map(|unit| -unit.axis[2]).sum::<f64>() * facts.scale[0];
+    let sizes = scales(facts.airframe, [1.0; 2]).into_iter();
+    let whole: f64 = units
+        .iter()
+        .zip(sizes)
+        .map(|(unit, size)| -unit.axis[2] * size[0])
+        .sum();
     let middle = |k: usize| units.iter().map(|unit| unit.position_m[k]).sum::<f64>() / units.len() as f64;
     let sides: Vec<String> = [("in front of", "behind"), ("right of", "left of")]
         .into_iter()

@@ -6,7 +6,7 @@ use super::rule::{Facts, Rule};
 use crate::airframe::{Airframe, Axis};
 use crate::diagnostic::{Code, Diagnostic, number, rounded};
 use crate::model::effectiveness::Effectiveness;
-use crate::model::{PairMap, law};
+use crate::model::{PairMap, law, scales};
 
 /// Share of a unit's largest effort above which a tolerance is a mistake.
 const WIDE: f64 = 0.01;
@@ -52,9 +52,9 @@ pub(super) fn wide_tolerances(facts: &Facts<'_>) -> Vec<Rule> {
 ///
 /// # Errors
 /// A tolerance above a tenth of a unit's largest effort.
-pub(crate) fn check_tolerances(airframe: &Airframe, pair: &PairMap) -> Result<(), Vec<Diagnostic>> {
+pub(crate) fn check_tolerances(airframe: &Airframe) -> Result<(), Vec<Diagnostic>> {
     let mut faults = Vec::new();
-    let rules = tolerances(airframe, pair.scale());
+    let rules = tolerances(airframe, PairMap::new(&airframe.pair, &airframe.throttle).scale());
     for rule in rules.filter(|rule| rule.code == Code::ToleranceAbsurd) {
         rule.check(airframe, &mut faults);
     }
@@ -69,12 +69,10 @@ pub(crate) fn check_tolerances(airframe: &Airframe, pair: &PairMap) -> Result<()
 pub(crate) fn check_authority(
     airframe: &Airframe,
     effectiveness: &Effectiveness,
-    pair: &PairMap,
 ) -> Result<(), Vec<Diagnostic>> {
     let limit = f64::from(REQUEST_LIMIT);
-    let (scale, factors) = (pair.scale(), law::largest_factors(airframe));
-    let efforts = [0, 1].map(|k| factors[k] * scale[k]);
-    let most = |axis: Axis| effectiveness.largest(axis as usize, efforts);
+    let efforts = scales(airframe, law::largest_factors(airframe));
+    let most = |axis: Axis| effectiveness.largest(axis as usize, &efforts);
     let Some(axis) = Axis::ALL.into_iter().rev().find(|axis| most(*axis) > limit) else {
         return Ok(());
     };

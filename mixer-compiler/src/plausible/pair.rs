@@ -43,7 +43,7 @@ const POWER_GROWTH: [f64; 2] = [1.2, 3.5];
 
 /// Thrust over torque tells the units of both.
 pub(super) fn units(facts: &Facts<'_>) -> Vec<Rule> {
-    let torques = facts.border.iter().map(|[_, q]| *q);
+    let torques = facts.borders[0].iter().map(|[_, q]| *q);
     let span = torques.clone().fold(f64::NEG_INFINITY, f64::max) - torques.fold(f64::INFINITY, f64::min);
     let thrust = facts.scale[0];
     let ratio = span / thrust;
@@ -194,10 +194,10 @@ pub(super) fn shape(facts: &Facts<'_>) -> Vec<Rule> {
 
 /// A pair that stands in.
 pub(super) fn borrowed(facts: &Facts<'_>) -> Vec<Rule> {
-    let told = facts.airframe.pair.borrowed();
-    let rule = Rule::holds(Code::BorrowedPair, "pair.borrowed_from", told.is_none());
+    let from = &facts.airframe.pair.borrowed_from;
+    let rule = Rule::holds(Code::BorrowedPair, "pair.borrowed_from", from.is_empty());
     vec![rule.says(
-        format!("{}: its thrust, torque and hover are not yours", told.unwrap_or_default()),
+        format!("the pair is that of {from}, not of this vehicle: its thrust, torque and hover are not yours"),
         "stands in",
         "replace [pair] by what `cargo mixer identify` makes of your bench file, or `cargo mixer predict` of a data sheet",
     )]

@@ -2,8 +2,8 @@
 
 use crate::airframe::{Airframe, Axis};
 use crate::diagnostic::{Code, Diagnostic};
-use crate::model::PairMap;
 use crate::model::effectiveness::Effectiveness;
+use crate::model::{PairMap, scales};
 
 /// Points per edge of the throttle box at which a unit's efforts are looked at.
 const POINTS: usize = 128;
@@ -70,13 +70,13 @@ impl Rule {
 }
 
 /// An airframe and what was found out about it. Efforts are `[f, Q]` of one unit at the reference
-/// voltage, N and N m.
+/// voltage, N and N m, of the first pair where units differ.
 pub(super) struct Facts<'a> {
     pub(super) airframe: &'a Airframe,
     /// `None` where the airframe is refused.
     pub(super) effectiveness: Option<&'a Effectiveness>,
-    pub(super) map: &'a PairMap,
-    /// Largest thrust and largest absolute torque.
+    pub(super) map: PairMap,
+    /// Largest thrust and largest absolute torque, of any unit.
     pub(super) scale: [f64; 2],
     /// Efforts at idle, of the upper and of the lower rotor at full throttle with the other at idle,
     /// and at full throttle.
@@ -84,32 +84,33 @@ pub(super) struct Facts<'a> {
     pub(super) upper: [f64; 2],
     pub(super) lower: [f64; 2],
     pub(super) full: [f64; 2],
-    /// Efforts along the border of the attainable set.
-    pub(super) border: Vec<[f64; 2]>,
+    /// Efforts along the border of the attainable set of each pair.
+    pub(super) borders: Vec<Vec<[f64; 2]>>,
     /// Least and largest bare thrust at the reference voltage, N; `None` where the airframe is
     /// refused.
     pub(super) thrust_range_n: Option<[f64; 2]>,
 }
 
 impl<'a> Facts<'a> {
-    pub(super) fn new(
-        airframe: &'a Airframe,
-        map: &'a PairMap,
-        effectiveness: Option<&'a Effectiveness>,
-        thrust_range_n: Option<[f64; 2]>,
-    ) -> Facts<'a> {
+    pub(super) fn new(airframe: &'a Airframe, compiled: Option<(&'a Effectiveness, [f64; 2])>) -> Facts<'a> {
+        let map = PairMap::new(&airframe.pair, &airframe.throttle);
         let [low, high] = map.range();
+        let scales = scales(airframe, [1.0; 2]);
+        let border = |pair| {
+            let map = PairMap::new(pair, &airframe.throttle);
+            map.border(POINTS).into_iter().map(|at| map.efforts(at)).collect()
+        };
         Facts {
             airframe,
-            effectiveness,
-            map,
-            scale: map.scale(),
+            effectiveness: compiled.map(|(effectiveness, _)| effectiveness),
+            scale: [0, 1].map(|k| scales.iter().fold(0.0, |most: f64, scale| most.max(scale[k]))),
             idle: map.efforts([low, low]),
             upper: map.efforts([high, low]),
             lower: map.efforts([low, high]),
             full: map.efforts([high, high]),
-            border: map.border(POINTS).into_iter().map(|at| map.efforts(at)).collect(),
-            thrust_range_n,
+            borders: airframe.pairs().map(border).collect(),
+            thrust_range_n: compiled.map(|(_, range)| range),
+            map,
         }
     }
 

@@ -154,16 +154,27 @@ impl<'a, 'f> Fields<'a, 'f> {
         self.inner(item, shape, help).map(|mut fields| read(&mut fields))
     }
 
-    /// An array of tables in this one; empty where it is absent or was reported.
+    /// An array of tables in this one, or a table alone where the key takes either; empty where it is absent or was
+    /// reported.
     pub(crate) fn tables<T>(
         &mut self,
         key: &'static Key,
         mut read: impl FnMut(&mut Fields<'a, '_>) -> T,
     ) -> Vec<T> {
-        let (Some(item), Kind::Tables(shape)) = (self.item(key), key.kind) else {
+        let (Some(item), Kind::Tables(shape) | Kind::TableOrTables(shape)) = (self.item(key), key.kind)
+        else {
             return Vec::new();
         };
+        let is_alone = matches!(key.kind, Kind::TableOrTables(_));
         let DeValue::Array(elements) = item.value else {
+            if is_alone {
+                let help = format!("head the table `{}`", shape.header);
+                return self
+                    .inner(item, shape, help)
+                    .map(|mut fields| read(&mut fields))
+                    .into_iter()
+                    .collect();
+            }
             let help = format!(
                 "head each of them `{}`, with two brackets on either side",
                 shape.header
@@ -174,7 +185,10 @@ impl<'a, 'f> Fields<'a, 'f> {
         let mut values = Vec::with_capacity(elements.len());
         for (index, element) in elements.iter().enumerate() {
             let element = item.element(index, element);
-            let help = format!("head each of them `{}`", shape.header);
+            let help = match is_alone {
+                true => format!("head each of them `[{}]`", shape.header),
+                false => format!("head each of them `{}`", shape.header),
+            };
             values.extend(
                 self.inner(element, shape, help)
                     .map(|mut fields| read(&mut fields)),
@@ -264,7 +278,7 @@ impl<'a, 'f> Fields<'a, 'f> {
     fn missing(&self, key: &Key) -> Diagnostic {
         let (name, path, example) = (key.name, self.key_path(key.name), key.example());
         let (message, help) = match key.kind {
-            Kind::Table(shape) | Kind::Tables(shape) => (
+            Kind::Table(shape) | Kind::Tables(shape) | Kind::TableOrTables(shape) => (
                 format!("the table `{example}` is missing"),
                 format!("add the table `{example}` with {}", joined(shape.required())),
             ),

@@ -60,7 +60,7 @@ impl Key {
     /// The line, or the header, that a user could add.
     pub(crate) fn example(&self) -> String {
         match self.kind {
-            Kind::Table(shape) | Kind::Tables(shape) => shape.header.to_owned(),
+            Kind::Table(shape) | Kind::Tables(shape) | Kind::TableOrTables(shape) => shape.header.to_owned(),
             _ => format!("{} = {}", self.name, self.example),
         }
     }
@@ -105,6 +105,8 @@ pub enum Kind {
     Table(&'static Shape),
     /// A list of tables.
     Tables(&'static Shape),
+    /// A table, or a list of tables.
+    TableOrTables(&'static Shape),
 }
 
 /// The numbers that a key takes.
@@ -158,6 +160,7 @@ impl Kind {
             Kind::ListOfChannels => "list of `[upper, lower]`".to_owned(),
             Kind::Table(_) => "table".to_owned(),
             Kind::Tables(_) => "tables".to_owned(),
+            Kind::TableOrTables(_) => "table, or tables".to_owned(),
         }
     }
 }
@@ -192,7 +195,7 @@ impl Shape {
     /// This table, and those in it.
     pub fn all(&'static self) -> Vec<&'static Shape> {
         let inner = self.keys.iter().flat_map(|key| match key.kind {
-            Kind::Table(shape) | Kind::Tables(shape) => shape.all(),
+            Kind::Table(shape) | Kind::Tables(shape) | Kind::TableOrTables(shape) => shape.all(),
             _ => Vec::new(),
         });
         std::iter::once(self).chain(inner).collect()

@@ -152,6 +152,9 @@ fn diagnostic(source: &Source, error: &Error) -> Diagnostic {
     let (message, help) = if said == DUPLICATE {
         let help = match written {
             "unit" => "head every unit `[[unit]]`, with two brackets on either side",
+            "pair" => {
+                "keep one of the two, or head each of several `[[pair]]`, with two brackets on either side"
+            }
             _ => "keep one of the two",
         };
         (&*format!("{} is there twice", quoted(written)), help)

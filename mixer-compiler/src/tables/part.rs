@@ -2,8 +2,8 @@
 //! The fields of each type are named once, below.
 
 use mixer_rt::tables::{
-    Airmode, Border, Cell, ClosedForm, ClosedFormUnit, Facets, Grid, Knot, Law, LawPiece, Outline, Pair,
-    Priorities, SingleRotor, Steep, ThrottleRange, Tolerance, Unit,
+    Airmode, Border, Cell, ClosedForm, ClosedFormUnit, Facets, Grid, Kind, Knot, Law, LawPiece, Outline,
+    Pair, Priorities, SingleRotor, Steep, ThrottleRange, Tolerance, Unit, Unlike,
 };
 use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::{ToTokens, quote};
@@ -87,8 +87,8 @@ impl<T: Part> Part for Option<T> {
 
 /// Structures of `mixer-rt` by their fields, with the bytes that alignment or an address adds.
 macro_rules! parts {
-    ($($name:ident $(<$generic:tt>)? { $($field:ident),+ } $(+ $more:literal)?;)+) => {$(
-        impl Part for $name $(<$generic>)? {
+    ($($name:ident $(<$($generic:tt),+>)? { $($field:ident),+ } $(+ $more:literal)?;)+) => {$(
+        impl Part for $name $(<$($generic),+>)? {
             fn written(&self) -> (TokenStream, usize) {
                 // By the field's own type: a method call would look through references.
                 $(let $field = Part::written(&self.$field);)+
@@ -104,6 +104,8 @@ parts! {
     Unit { allocation, effectiveness, channels };
     Pair<QuantityTable> { thrust, torque };
     SingleRotor { thrust, torque };
+    Kind<QuantityTable, InverseTable> { pair, singles, inverse, mean_square_slopes };
+    Unlike<'_, QuantityTable, InverseTable> { kinds, of };
     ThrottleRange { min, max };
     Law<'_> { reference, range, pieces };
     LawPiece { start, thrust, torque };

@@ -37,6 +37,7 @@ use core::hint::black_box;
 
 use crate::Wrench;
 use crate::allocate::priorities::Airmode;
+use crate::pair::{Inverse, PolynomialInverse, Unlike};
 
 /// The largest number of units.
 const MOST_CLOSED_FORM_UNITS: usize = 4;
@@ -110,35 +111,51 @@ pub struct ClosedForm<'a> {
 
 /// Whether an airframe's tables have a closed form of allocation, or the interior point method serves
 /// what least norm cannot.
-pub trait AllocationMethod {
+pub trait AllocationMethod<P> {
+    /// The inverse map of unlike pairs.
+    type Inverse: Inverse;
+
     /// The closed form, where there is one.
-    fn closed_form(&self) -> Option<&ClosedForm<'_>>;
+    #[inline(always)]
+    fn closed_form(&self) -> Option<&ClosedForm<'_>> {
+        None
+    }
+
+    /// The kinds of units, where they differ.
+    #[inline(always)]
+    fn unlike(&self) -> Option<&Unlike<'_, P, Self::Inverse>> {
+        None
+    }
 }
+
+/// An inverse that no airframe has.
+type NoInverse = PolynomialInverse<[f32; 1], 0>;
 
 /// No closed form: tilted axes, more than four units, or priorities that couple thrust and yaw.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NoClosedForm;
 
-impl AllocationMethod for NoClosedForm {
-    #[inline(always)]
-    fn closed_form(&self) -> Option<&ClosedForm<'_>> {
-        None
-    }
+impl<P> AllocationMethod<P> for NoClosedForm {
+    type Inverse = NoInverse;
 }
 
-/// By reference, so that an image whose rotors never fail holds this table and not the rest.
-impl AllocationMethod for &ClosedForm<'_> {
+/// Unlike units have no closed form.
+impl<P, I: Inverse> AllocationMethod<P> for Unlike<'_, P, I> {
+    type Inverse = I;
+
     #[inline(always)]
-    fn closed_form(&self) -> Option<&ClosedForm<'_>> {
+    fn unlike(&self) -> Option<&Unlike<'_, P, I>> {
         Some(self)
     }
 }
 
-/// Any of these, where it is known at run time only.
-impl AllocationMethod for Option<ClosedForm<'_>> {
+/// By reference, so that an image whose rotors never fail holds this table and not the rest.
+impl<P> AllocationMethod<P> for &ClosedForm<'_> {
+    type Inverse = NoInverse;
+
     #[inline(always)]
     fn closed_form(&self) -> Option<&ClosedForm<'_>> {
-        self.as_ref()
+        Some(self)
     }
 }
 

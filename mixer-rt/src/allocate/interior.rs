@@ -30,13 +30,13 @@
 //! Constants were chosen on 20,000 drawn requests per state of health, and on 50,000 pairs of requests
 //! 1e-4 apart; `cargo soak` and the tests of `tests/allocation` show what they trade.
 
+use super::closed_form::AllocationMethod;
 use super::frame::Frame;
 use super::request::Request;
 use super::system::{Factors, Matrix, Products};
 use super::unit::UnitState;
 use super::unknown::Unknown;
-use crate::layout::Tables;
-use crate::pair::{Expansion, Quantity};
+use crate::pair::{Expansion, Inverse, Quantity};
 use crate::{divided, larger, rolled};
 
 /// Iterations of the first run. Fewer leave more requests short, and make throttles step at the border of least
@@ -80,7 +80,7 @@ const SHARE: f32 = 0.97;
 /// Throttles of least norm nearer to a bound count as so near, as a share of the range.
 const CLOSE: f32 = 1e-3;
 
-impl<P: Quantity, I, S, const VERTICAL: bool> Frame<'_, '_, P, I, S, VERTICAL> {
+impl<P: Quantity, I: Inverse, S: AllocationMethod<P>, const VERTICAL: bool> Frame<'_, '_, P, I, S, VERTICAL> {
     /// Cuts the request by priority; true where its rows are met. The units' throttles are those that
     /// the answer is drawn to.
     #[inline(never)]
@@ -175,14 +175,14 @@ impl<P: Quantity, I, S, const VERTICAL: bool> Frame<'_, '_, P, I, S, VERTICAL> {
         let rho = RHO / (self.span() * self.span());
         let mut matrix = [0.0; 10];
         let (mut missed, mut gap) = request.eliminate(lambda, mu, &mut matrix);
-        for unit in rolled(units) {
+        for (index, unit) in rolled(units.iter_mut().enumerate()) {
             let Expansion {
                 mut value,
                 slopes,
                 bends,
             } = unit.rotors.expansion(
-                &tables.pair,
-                &tables.singles,
+                tables.pair_of(index),
+                tables.singles_of(index),
                 unit.unknowns.map(|at| least + at.low),
             );
             let gain = Products::<VERTICAL>::gains(&unit.columns, lambda);
@@ -246,8 +246,8 @@ impl<P: Quantity, I, S, const VERTICAL: bool> Frame<'_, '_, P, I, S, VERTICAL> {
     #[inline(never)]
     fn missed(&self, request: &Request, units: &mut [UnitState]) -> [f32; 4] {
         let mut missed = request.left();
-        for unit in rolled(units) {
-            self.place(unit);
+        for (index, unit) in rolled(units.iter_mut().enumerate()) {
+            self.place(index, unit);
             Products::<VERTICAL>::subtract(&unit.columns, unit.efforts, &mut missed);
         }
         missed
@@ -255,13 +255,9 @@ impl<P: Quantity, I, S, const VERTICAL: bool> Frame<'_, '_, P, I, S, VERTICAL> {
 
     /// Writes a unit's throttles at its unknowns and what it gives there.
     #[inline(always)]
-    pub(super) fn place(&self, unit: &mut UnitState) {
-        let Tables {
-            pair,
-            singles,
-            throttle: range,
-            ..
-        } = self.tables;
+    pub(super) fn place(&self, index: usize, unit: &mut UnitState) {
+        let (pair, singles) = (self.tables.pair_of(index), self.tables.singles_of(index));
+        let range = &self.tables.throttle;
         for side in 0..2 {
             let throttle = range.clamp(range.min + unit.unknowns[side].low);
             unit.throttles[side] = if unit.rotors.turns(side) { throttle } else { 0.0 };

@@ -2,6 +2,7 @@
 
 use core::mem::replace;
 
+use super::closed_form::AllocationMethod;
 use super::frame::Frame;
 use super::unit::UnitState;
 use crate::clamp;
@@ -9,7 +10,7 @@ use crate::layout::Unit;
 use crate::pair::{Inverse, Quantity};
 use crate::rolled;
 
-impl<P: Quantity, I: Inverse, S, const VERTICAL: bool> Frame<'_, '_, P, I, S, VERTICAL> {
+impl<P: Quantity, I: Inverse, S: AllocationMethod<P>, const VERTICAL: bool> Frame<'_, '_, P, I, S, VERTICAL> {
     /// Efforts of least norm of a unit for a wrench (N m, N), at the reference voltage.
     #[inline(always)]
     pub(super) fn least_norm(&self, unit: &Unit, wrench: &[f32; 4]) -> [f32; 2] {
@@ -22,21 +23,19 @@ impl<P: Quantity, I: Inverse, S, const VERTICAL: bool> Frame<'_, '_, P, I, S, VE
     #[inline(never)]
     pub(super) fn serve_by_least_norm(&self, wrench: &[f32; 4], units: &mut [UnitState]) -> bool {
         let mut is_served = true;
-        for (state, unit) in rolled(units.iter_mut().zip(self.tables.units)) {
+        for (index, (state, unit)) in rolled(units.iter_mut().zip(self.tables.units).enumerate()) {
             state.efforts = self.least_norm(unit, wrench);
-            is_served &= self.invert(state);
+            is_served &= self.invert(index, state);
         }
         is_served
     }
 
     /// Writes a unit's throttles for the efforts asked; true where it gives them.
     #[inline(always)]
-    pub(super) fn invert(&self, state: &mut UnitState) -> bool {
+    pub(super) fn invert(&self, index: usize, state: &mut UnitState) -> bool {
         let tables = self.tables;
-        state.throttles = tables
-            .inverse
-            .throttles(&tables.pair, &tables.throttle, state.efforts);
-        self.gives(tables.pair.efforts(state.throttles), state)
+        state.throttles = tables.throttles_of(index, state.efforts);
+        self.gives(tables.pair_of(index).efforts(state.throttles), state)
     }
 
     /// Notes what a unit gives; true where it is what was asked, within the inverse map's tolerance.
@@ -56,8 +55,8 @@ impl<P: Quantity, I: Inverse, S, const VERTICAL: bool> Frame<'_, '_, P, I, S, VE
         if self.serve_by_least_norm(&[0.0, 0.0, 0.0, clamp(thrust, least, most)], units) {
             return;
         }
-        for state in rolled(units) {
-            self.place(state);
+        for (index, state) in rolled(units.iter_mut().enumerate()) {
+            self.place(index, state);
         }
     }
 }

@@ -27,7 +27,7 @@
 
 use core::hint::black_box;
 
-use super::closed_form::{ClosedForm, Efforts};
+use super::closed_form::{AllocationMethod, ClosedForm, Efforts};
 use super::frame::Frame;
 use super::unit::UnitState;
 use crate::layout::Tables;
@@ -69,7 +69,7 @@ impl ClosedForm<'_> {
 /// [`ClosedForm::add_power_bias`] for any frame with all rotors, whose units are at the throttles of least
 /// norm for `wrench`. `factors` is `[k_f, k_Q]`.
 #[inline(never)]
-pub(crate) fn add_power_bias<P: Quantity, I: Inverse, S>(
+pub(crate) fn add_power_bias<P: Quantity, I: Inverse, S: AllocationMethod<P>>(
     tables: &Tables<'_, P, I, S>,
     wrench: &[f32; 4],
     factors: [f32; 2],
@@ -79,7 +79,7 @@ pub(crate) fn add_power_bias<P: Quantity, I: Inverse, S>(
     Frame::<_, _, _, true>::new(black_box(tables), factors).add_power_bias(wrench, units);
 }
 
-impl<P: Quantity, I: Inverse, S, const VERTICAL: bool> Frame<'_, '_, P, I, S, VERTICAL> {
+impl<P: Quantity, I: Inverse, S: AllocationMethod<P>, const VERTICAL: bool> Frame<'_, '_, P, I, S, VERTICAL> {
     fn add_power_bias(&self, wrench: &[f32; 4], units: &mut [UnitState]) {
         let (tables, c) = (self.tables, self.tables.power_bias_nm_per_n);
         // What Q = c f would add to the wrench.
@@ -90,11 +90,11 @@ impl<P: Quantity, I: Inverse, S, const VERTICAL: bool> Frame<'_, '_, P, I, S, VE
         }
         let [least, most] = [tables.throttle.min, tables.throttle.max].map(|end| end * end);
         let mut b = 1.0;
-        for (unit, table) in rolled(units.iter_mut().zip(tables.units)) {
+        for (index, (unit, table)) in rolled(units.iter_mut().zip(tables.units).enumerate()) {
             let [f, q] = self.least_norm(table, &added);
             let shift = [-f, c * unit.efforts[0] - q];
             unit.slopes[0] = shift;
-            let (_, jacobian) = tables.pair.efforts_and_jacobian(unit.throttles);
+            let (_, jacobian) = tables.pair_of(index).efforts_and_jacobian(unit.throttles);
             for (throttle, step) in unit.throttles.iter().zip(solve(jacobian, shift)) {
                 let square = throttle * throttle;
                 let change = (2.0 * throttle * step).abs();
@@ -105,10 +105,10 @@ impl<P: Quantity, I: Inverse, S, const VERTICAL: bool> Frame<'_, '_, P, I, S, VE
             }
         }
         let mut is_served = true;
-        for unit in rolled(units.iter_mut()) {
+        for (index, unit) in rolled(units.iter_mut().enumerate()) {
             let [f, q] = unit.slopes[0];
             unit.efforts = [unit.efforts[0] + b * f, unit.efforts[1] + b * q];
-            is_served &= self.invert(unit);
+            is_served &= self.invert(index, unit);
         }
         if !is_served {
             self.serve_by_least_norm(wrench, units);

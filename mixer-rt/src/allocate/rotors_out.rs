@@ -12,6 +12,7 @@
 //! y'^T B^T lambda: one system of four rows per tangent. The inverse map turns the efforts into
 //! throttles. Whether all units then give them is checked, so no convexity is needed.
 
+use super::closed_form::AllocationMethod;
 use super::frame::Frame;
 use super::system::{Factors, Products};
 use super::unit::UnitState;
@@ -31,33 +32,33 @@ const LEAST_RISE: f32 = 1e-6;
 /// Least square of the root that extends a tangent to a parabola: a step back to a fifth of the slope.
 const LEAST_SQUARE: f32 = 0.04;
 
-impl<P: Quantity, I: Inverse, S, const VERTICAL: bool> Frame<'_, '_, P, I, S, VERTICAL> {
+impl<P: Quantity, I: Inverse, S: AllocationMethod<P>, const VERTICAL: bool> Frame<'_, '_, P, I, S, VERTICAL> {
     /// Writes throttles that are nearest those of the whole frame; true where they give the wrench.
     #[inline(never)]
     pub(super) fn serve_with_rotors_out(&self, wrench: &[f32; 4], units: &mut [UnitState]) -> bool {
-        let [by_thrust, by_torque] = self.tables.mean_square_slopes;
         let (mut matrix, mut lost) = ([0.0; 10], [0.0; 4]);
-        for (unit, table) in rolled(units.iter_mut().zip(self.tables.units)) {
+        for (index, (unit, table)) in rolled(units.iter_mut().zip(self.tables.units).enumerate()) {
             unit.efforts = self.least_norm(table, wrench);
             unit.columns = self.columns(table);
             if unit.rotors.are_both() {
+                let [by_thrust, by_torque] = self.tables.slopes_of(index);
                 Products::<VERTICAL>::add(&unit.columns, [by_thrust, 0.0, by_torque], &mut matrix);
                 continue;
             }
             Products::<VERTICAL>::subtract(&unit.columns, unit.efforts.map(|effort| -effort), &mut lost);
-            self.invert_apart(unit);
+            self.invert_apart(index, unit);
             unit.targets = unit.throttles;
             unit.stop_failed();
         }
         let mut lambda = [0.0; 4];
         for _ in rolled(0..TANGENTS) {
             let (mut system, mut missed) = (matrix, lost);
-            for unit in rolled(units.iter_mut()) {
+            for (index, unit) in rolled(units.iter_mut().enumerate()) {
                 let Some(side) = unit.rotors.single() else {
                     continue;
                 };
                 let throttle = unit.throttles[side];
-                let [value, slope, half] = self.tables.singles[side].expansion(throttle);
+                let [value, slope, half] = self.tables.singles_of(index)[side].expansion(throttle);
                 let back = unit.targets[side] - throttle;
                 unit.slopes[side] = slope;
                 unit.curvature_per_slope = divided(4.0 * half[0], larger(slope[0], LEAST_RISE));
@@ -92,16 +93,17 @@ impl<P: Quantity, I: Inverse, S, const VERTICAL: bool> Frame<'_, '_, P, I, S, VE
         }
         let is_regular = lambda.iter().all(|row| row.abs() <= UNSERVED);
         let mut is_served = is_regular;
-        for unit in rolled(units) {
+        for (index, unit) in rolled(units.iter_mut().enumerate()) {
             if unit.rotors.are_both() {
                 if is_regular {
+                    let [by_thrust, by_torque] = self.tables.slopes_of(index);
                     let gain = Products::<VERTICAL>::gains(&unit.columns, &lambda);
                     unit.efforts[0] += by_thrust * gain[0];
                     unit.efforts[1] += by_torque * gain[1];
                 }
-                is_served &= self.invert_apart(unit);
+                is_served &= self.invert_apart(index, unit);
             } else if let Some(side) = unit.rotors.single() {
-                let [given, ..] = self.tables.singles[side].expansion(unit.throttles[side]);
+                let [given, ..] = self.tables.singles_of(index)[side].expansion(unit.throttles[side]);
                 is_served &= self.gives(given, unit);
             } else {
                 unit.efforts = [0.0; 2];
@@ -112,7 +114,7 @@ impl<P: Quantity, I: Inverse, S, const VERTICAL: bool> Frame<'_, '_, P, I, S, VE
 
     /// [`Frame::invert`], once in the code for both places.
     #[inline(never)]
-    fn invert_apart(&self, unit: &mut UnitState) -> bool {
-        self.invert(unit)
+    fn invert_apart(&self, index: usize, unit: &mut UnitState) -> bool {
+        self.invert(index, unit)
     }
 }

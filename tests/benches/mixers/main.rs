@@ -13,7 +13,8 @@ use std::time::SystemTime;
 
 use criterion::{BenchmarkGroup, Criterion, Throughput, measurement::WallTime};
 use isolated_rotors::{IsolatedRotors, IsolatedTables};
-use mixer_rt::{Wrench, tables::Airmode};
+use mixer_rt::Wrench;
+use mixer_rt::tables::{Airmode, AllocationMethod, Inverse, Quantity, Tables};
 use mixer_setpoints::{Kind, Requests};
 use mixer_tests::golden;
 use wls::WeightedLeastSquares;
@@ -28,10 +29,7 @@ const REQUESTS: usize = 256;
 
 type Asked = Vec<(Wrench, f32)>;
 
-fn asked<P: mixer_rt::tables::Quantity, I, S>(
-    tables: &mixer_rt::tables::Tables<'_, P, I, S>,
-    kind: Kind,
-) -> Asked {
+fn asked<P: Quantity, I: Inverse, S: AllocationMethod<P>>(tables: &Tables<'_, P, I, S>, kind: Kind) -> Asked {
     Requests::new(tables, kind, 8)
         .take(REQUESTS)
         .map(|request| (Wrench::from_array(request.wrench), request.voltage_v))

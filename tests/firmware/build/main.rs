@@ -115,12 +115,14 @@ fn generate() -> Result<(), String> {
 /// The frames of the zoo whose bits are compared.
 fn of_zoo(airframes: &[String]) -> Result<Vec<(String, String)>, String> {
     let (seed, indices) = zoo::ON_TARGET;
-    let pair = |name: &String| {
+    let read = |name: &String| {
         let path = path_of(name);
         let text = fs::read_to_string(&path).map_err(|e| format!("{}: {e}", path.display()))?;
-        pairs::Pair::of_airframe(&Source::new(name.as_str(), text))
+        Ok(Source::new(name.as_str(), text))
     };
-    let pairs: Result<Vec<_>, String> = airframes.iter().map(pair).collect();
+    let files: Vec<Source> = airframes.iter().map(read).collect::<Result<_, String>>()?;
+    let with_one = files.iter().filter(|file| pairs::Pair::is_alone(file));
+    let pairs: Result<Vec<_>, String> = with_one.map(pairs::Pair::of_airframe).collect();
     let zoo = zoo::Zoo::new(seed, pairs?);
     let named = indices.map(|index| (format!("zoo-{index}"), zoo.specimen(index).text));
     Ok(named.into())

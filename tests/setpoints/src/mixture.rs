@@ -2,7 +2,7 @@
 
 use mixer_rt::{
     Saturation, SetpointError, Wrench,
-    tables::{Quantity, Tables},
+    tables::{AllocationMethod, Inverse, Quantity, Tables},
 };
 
 use crate::{Digest, Kind, Ranges, Requests, Setpoint, Setpoints};
@@ -10,16 +10,16 @@ use crate::{Digest, Kind, Ranges, Requests, Setpoint, Setpoints};
 /// Endless sequence: attainable requests, saturated ones, and setpoints that may not be finite, in
 /// turn.
 #[derive(Clone, Debug)]
-pub struct Mixture<'a, P> {
-    attainable: Requests<'a, P>,
-    saturated: Requests<'a, P>,
+pub struct Mixture<'a, P, I, S> {
+    attainable: Requests<'a, P, I, S>,
+    saturated: Requests<'a, P, I, S>,
     anything: Setpoints,
     index: u32,
 }
 
-impl<'a, P: Quantity> Mixture<'a, P> {
+impl<'a, P: Quantity, I: Inverse, S: AllocationMethod<P>> Mixture<'a, P, I, S> {
     /// The sequence of one seed for the mixer of `tables`.
-    pub fn new<I, S>(tables: &'a Tables<'a, P, I, S>, seed: u64) -> Self {
+    pub fn new(tables: &'a Tables<'a, P, I, S>, seed: u64) -> Self {
         let attainable = Requests::new(tables, Kind::Attainable, seed);
         let [roll, pitch, yaw, thrust] = attainable.authority();
         let [low, high] = tables
@@ -44,7 +44,7 @@ impl<'a, P: Quantity> Mixture<'a, P> {
     }
 }
 
-impl<P: Quantity> Iterator for Mixture<'_, P> {
+impl<P: Quantity, I: Inverse, S: AllocationMethod<P>> Iterator for Mixture<'_, P, I, S> {
     type Item = Setpoint;
 
     fn next(&mut self) -> Option<Setpoint> {

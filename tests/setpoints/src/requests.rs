@@ -1,6 +1,6 @@
 //! Requests to one airframe's mixer, drawn around what it can deliver.
 
-use mixer_rt::tables::{Law, Pair, Quantity, Tables, ThrottleRange, Unit};
+use mixer_rt::tables::{AllocationMethod, Inverse, Law, Quantity, Tables, ThrottleRange};
 
 use mixer_rt::Conditions;
 
@@ -20,11 +20,10 @@ pub enum Kind {
 
 /// Endless sequence of requests to the mixer of `tables`.
 #[derive(Clone, Debug)]
-pub struct Requests<'a, P> {
+pub struct Requests<'a, P, I, S> {
     random: Random,
     kind: Kind,
-    pair: &'a Pair<P>,
-    units: &'a [Unit],
+    tables: &'a Tables<'a, P, I, S>,
     throttle: ThrottleRange,
     voltage: Option<&'a Law<'a>>,
     air: Option<&'a Law<'a>>,
@@ -33,16 +32,17 @@ pub struct Requests<'a, P> {
     authority: [f32; 4],
 }
 
-impl<'a, P: Quantity> Requests<'a, P> {
+impl<'a, P: Quantity, I: Inverse, S: AllocationMethod<P>> Requests<'a, P, I, S> {
     /// The sequence of one seed.
-    pub fn new<I, S>(tables: &'a Tables<'a, P, I, S>, kind: Kind, seed: u64) -> Self {
+    pub fn new(tables: &'a Tables<'a, P, I, S>, kind: Kind, seed: u64) -> Self {
         let ThrottleRange { min, max } = tables.throttle;
-        let [f, _] = tables.pair.efforts([max, max]);
-        let [_, low] = tables.pair.efforts([max, min]);
-        let [_, high] = tables.pair.efforts([min, max]);
-        let q = if high > -low { high } else { -low };
         let mut authority = [0.0; 4];
-        for unit in tables.units {
+        for (index, unit) in tables.units.iter().enumerate() {
+            let pair = tables.pair_of(index);
+            let [f, _] = pair.efforts([max, max]);
+            let [_, low] = pair.efforts([max, min]);
+            let [_, high] = pair.efforts([min, max]);
+            let q = if high > -low { high } else { -low };
             let [by_thrust, by_torque] = unit.effectiveness;
             for ((sum, by_f), by_q) in authority.iter_mut().zip(by_thrust).zip(by_torque) {
                 *sum += by_f.abs() * f + by_q.abs() * q;
@@ -51,8 +51,7 @@ impl<'a, P: Quantity> Requests<'a, P> {
         Requests {
             random: Random::new(seed),
             kind,
-            pair: &tables.pair,
-            units: tables.units,
+            tables,
             throttle: tables.throttle,
             voltage: tables.voltage.as_ref(),
             air: tables.air.as_ref(),
@@ -101,12 +100,12 @@ impl<'a, P: Quantity> Requests<'a, P> {
         });
         let factors = [of_voltage[0] * of_air[0], of_voltage[1] * of_air[1]];
         let mut wrench = [0.0; 4];
-        for unit in self.units {
+        for (index, unit) in self.tables.units.iter().enumerate() {
             let throttles = [
                 draw(&mut self.random, self.throttle),
                 draw(&mut self.random, self.throttle),
             ];
-            let efforts = self.pair.efforts(throttles);
+            let efforts = self.tables.pair_of(index).efforts(throttles);
             for ((effect, effort), factor) in unit.effectiveness.iter().zip(efforts).zip(factors) {
                 for (sum, effect) in wrench.iter_mut().zip(effect) {
                     *sum += effect * (factor * effort);
@@ -198,7 +197,7 @@ impl<'a, P: Quantity> Requests<'a, P> {
     }
 }
 
-impl<P: Quantity> Iterator for Requests<'_, P> {
+impl<P: Quantity, I: Inverse, S: AllocationMethod<P>> Iterator for Requests<'_, P, I, S> {
     type Item = Setpoint;
 
     fn next(&mut self) -> Option<Setpoint> {

@@ -27,6 +27,9 @@ struct Arguments {
     /// One frame and no more
     #[arg(long)]
     only: bool,
+    /// Frames of two pairs
+    #[arg(long)]
+    unlike: bool,
     /// Where the airframes of failures are written
     #[arg(short, long, value_name = "FOLDER", default_value = "target/soak")]
     output: PathBuf,
@@ -53,6 +56,7 @@ fn run(arguments: &Arguments) -> Result<usize, String> {
         Some(data) => frames::zoo_with_bench_data(arguments.seed, Path::new(&data))?,
         None => frames::zoo(arguments.seed)?,
     };
+    let zoo = if arguments.unlike { zoo.unlike() } else { zoo };
     let end = Instant::now() + Duration::from_secs_f64(60.0 * arguments.minutes);
     let mut soak = Soak::new(zoo, arguments.seed);
     let mut failures = 0;

@@ -53,7 +53,9 @@ fn wrench(values: [f64; 4], decimals: usize) -> String {
 pub(super) fn keys() -> Vec<Table> {
     let row = |key: &Key| {
         let value = match key.kind {
-            Kind::Table(shape) | Kind::Tables(shape) => format!("`{}`", shape.header),
+            Kind::Table(shape) | Kind::Tables(shape) | Kind::TableOrTables(shape) => {
+                format!("`{}`", shape.header)
+            }
             kind => kind.words(),
         };
         let optional = if key.required { "" } else { "Optional. " };

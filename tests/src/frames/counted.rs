@@ -96,6 +96,8 @@ pub fn y6(name: &str, text: &str) -> Option<(String, String)> {
         "units = 4\nfirst_angle_deg = 45.0",
         "units = 3\nfirst_angle_deg = 60.0",
     );
+    // Of several pairs the one behind has its own.
+    let text = text.replace("\"rear\", \"rear\", ", "\"rear\", ");
     Some((format!("y6-{pair}"), text.replace(name, NAME)))
 }
 

@@ -41,6 +41,11 @@ const CHANGE: f64 = 0.02;
 const ATTEMPTS: usize = 8;
 
 impl Pair {
+    /// Whether an airframe file has one pair: several are those of other files.
+    pub fn is_alone(source: &Source) -> bool {
+        !source.text.contains("[[pair]]")
+    }
+
     /// The pair of an airframe file, whose upper rotor is taken to turn clockwise on the bench.
     ///
     /// # Errors
@@ -80,6 +85,33 @@ impl Pair {
             }
         }
         first.clone()
+    }
+
+    /// One of other propellers for the same throttles: of another size, and altered a little.
+    pub(super) fn another(&self, random: &mut Random) -> Pair {
+        let mut pair = self.clone();
+        pair.alter(random);
+        let [low, high] = self.throttle;
+        let [thrust, torque] = &pair.coefficients;
+        let least = EnclosedPairMap::of(pair.basis, thrust, torque).least_idle(high);
+        if least.is_none_or(|least| ABOVE_FOLD * least > low) {
+            pair = self.clone();
+        }
+        let factor = log_uniform(random, [0.5, 2.0]);
+        let factors = [factor, factor * factor.sqrt()];
+        let alone = pair
+            .alone
+            .iter_mut()
+            .flatten()
+            .flat_map(|alone| alone.iter_mut().zip(factors));
+        for (list, factor) in alone {
+            list.iter_mut().for_each(|c| *c *= factor);
+        }
+        for (list, factor) in pair.coefficients.iter_mut().zip(factors) {
+            list.iter_mut().for_each(|c| *c *= factor);
+        }
+        pair.round();
+        pair
     }
 
     /// Largest thrust (N) and torque (N m, of either sign).

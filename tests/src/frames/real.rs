@@ -46,9 +46,11 @@ fn shipped() -> Result<Vec<Pair>, String> {
     let read = |name: &String| {
         let path = format!("airframes/{name}.toml");
         let text = std::fs::read_to_string(root().join(&path)).map_err(|error| format!("{path}: {error}"))?;
-        Pair::of_airframe(&Source::new(path, text))
+        Ok(Source::new(path, text))
     };
-    names.iter().map(read).collect()
+    let files: Vec<Source> = names.iter().map(read).collect::<Result<_, String>>()?;
+    let with_one = files.iter().filter(|file| Pair::is_alone(file));
+    with_one.map(Pair::of_airframe).collect()
 }
 
 /// The command's arguments, so that its defaults are taken.

@@ -26,6 +26,7 @@ pub const ON_TARGET: (u64, [u64; 5]) = (1, [1, 3, 4, 8, 9]);
 pub struct Zoo {
     seed: u64,
     pairs: Vec<Pair>,
+    is_unlike: bool,
 }
 
 /// A frame of the zoo.
@@ -41,7 +42,20 @@ impl Zoo {
     /// The frames of a seed, their pairs made of `pairs`, at least one.
     pub fn new(seed: u64, pairs: Vec<Pair>) -> Zoo {
         assert!(!pairs.is_empty(), "a zoo needs a pair");
-        Zoo { seed, pairs }
+        Zoo {
+            seed,
+            pairs,
+            is_unlike: false,
+        }
+    }
+
+    /// The same frames with another pair in the rear half of their units, where they have several.
+    #[must_use]
+    pub fn unlike(self) -> Zoo {
+        Zoo {
+            is_unlike: true,
+            ..self
+        }
     }
 
     /// The frame of this index.
@@ -54,13 +68,28 @@ impl Zoo {
             self.seed
         );
         write_pair(&mut text, &pair);
+        let mut of_rear = random.clone();
         write_voltage(&mut text, &mut random);
         // A sequence of its own, so that frames are otherwise those that they were before.
         write_air(&mut text, &mut Random::new(random.clone().bits()));
         write_inverse(&mut text, &pair, &mut random);
         let units = place(class, &mut random);
+        let is_rear = behind(&units);
+        let is_unlike = self.is_unlike && units.len() > 1;
+        if is_unlike {
+            let mut rear = String::new();
+            write_pair(&mut rear, &pair.another(&mut of_rear));
+            let (_, rear) = rear.split_once("\n[pair]\n").unwrap_or_default();
+            text = text.replacen("\n[pair]\n", "\n[[pair]]\nname = \"front\"\n", 1);
+            // The tables of the first pair end where another table begins.
+            let end = ["\n[voltage]", "\n[air]", "\n[inverse]"]
+                .iter()
+                .filter_map(|table| text.find(table));
+            let end = end.min().unwrap_or(text.len());
+            text.insert_str(end, &format!("\n[[pair]]\nname = \"rear\"\n{rear}"));
+        }
         write_allocation(&mut text, class, &pair, units.len(), &mut random);
-        write_units(&mut text, &units, &mut random);
+        write_units(&mut text, &units, is_unlike.then_some(&is_rear), &mut random);
         Specimen { class, text }
     }
 }
@@ -207,7 +236,15 @@ fn write_allocation(text: &mut String, class: Class, pair: &Pair, units: usize, 
     }
 }
 
-fn write_units(text: &mut String, units: &[Unit], random: &mut Random) {
+/// Whether a unit is one of the rear half.
+fn behind(units: &[Unit]) -> Vec<bool> {
+    let mut order: Vec<usize> = (0..units.len()).collect();
+    order.sort_by(|a, b| units[*a].position[0].total_cmp(&units[*b].position[0]));
+    let rear = &order[..units.len() / 2];
+    (0..units.len()).map(|unit| rear.contains(&unit)).collect()
+}
+
+fn write_units(text: &mut String, units: &[Unit], is_rear: Option<&Vec<bool>>, random: &mut Random) {
     let n = units.len();
     let mut channels: Vec<usize> = match random.below(3) {
         0 => (0..2 * n).collect(),
@@ -216,7 +253,7 @@ fn write_units(text: &mut String, units: &[Unit], random: &mut Random) {
     if random.below(3) == 0 {
         random.shuffle(&mut channels);
     }
-    for (unit, channels) in units.iter().zip(channels.chunks(2)) {
+    for (index, (unit, channels)) in units.iter().zip(channels.chunks(2)).enumerate() {
         let spin = if unit.clockwise { Spin::Cw } else { Spin::Ccw };
         // No negative zeros.
         let [x, y, z] = unit.position.map(|place| (place * 1e6).round() / 1e6 + 0.0);
@@ -225,6 +262,13 @@ fn write_units(text: &mut String, units: &[Unit], random: &mut Random) {
             "\n[[unit]]\nposition_m = [{x:?}, {y:?}, {z:?}]\nupper_spin = \"{}\"\nchannels = {channels:?}\n",
             spin.name()
         );
+        if let Some(is_rear) = is_rear {
+            let _ = writeln!(
+                text,
+                "pair = \"{}\"",
+                if is_rear[index] { "rear" } else { "front" }
+            );
+        }
         if unit.axis != [0.0, 0.0, -1.0] {
             let [x, y, z] = unit.axis;
             let _ = writeln!(text, "axis = [{x:.9}, {y:.9}, {z:.9}]");

@@ -40,6 +40,7 @@ impl FrameArgs {
             name: self.name.as_deref(),
             file: output.and_then(Path::file_stem).and_then(|stem| stem.to_str()),
             outputs: self.outputs,
+            pairs: Vec::new(),
         }
     }
 }

@@ -59,6 +59,8 @@ impl IsolatedTables {
 
     /// The tables of `airframe` with effectiveness M.
     pub fn of(airframe: &Airframe, effectiveness: &Effectiveness, voltage: Option<LawTable>) -> Self {
+        // Where units differ, all rotors are those of the mean pair.
+        let airframe = &airframe.with_mean_pair();
         let map = PairMap::new(&airframe.pair, &airframe.throttle);
         let kappa_m = torque_per_thrust(&map);
         let columns = rotor_columns(airframe, effectiveness, kappa_m);

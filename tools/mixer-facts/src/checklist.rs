@@ -9,6 +9,7 @@ use mixer_rt::Wrench;
 
 use mixer_compiler::Compiled;
 use mixer_compiler::airframe::{Axis, Spin, Unit};
+use mixer_compiler::model::scales;
 
 /// Share of an axis' size that is asked: small enough to be delivered in full.
 const ASKED: f64 = 0.02;
@@ -110,8 +111,8 @@ fn throttles(compiled: &Compiled, wrench: &Wrench) -> Option<Vec<f32>> {
 
 /// The largest thrust, or a torque in proportion to what the units' efforts make of the axis.
 fn size(compiled: &Compiled, axis: Axis) -> f64 {
-    let scale = compiled.pair.scale();
-    compiled.effectiveness.largest(axis as usize, scale)
+    let scales = scales(&compiled.airframe, [1.0; 2]);
+    compiled.effectiveness.largest(axis as usize, &scales)
 }
 
 /// Every unit in words: its place, its outputs, and how its upper rotor spins:

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use mixer_compiler::Compiled;
+use mixer_compiler::airframe::Airframe;
 use mixer_compiler::atmosphere::TOP_M;
 use mixer_compiler::diagnostic::rounded_up;
 use mixer_compiler::flywheel::Flywheel;
@@ -167,7 +168,12 @@ fn gives(list: &mut List, compiled: &Compiled) {
         let outputs = [unit.upper_channel, unit.lower_channel];
         (unit.position_m, unit.upper_spin, outputs)
     });
-    let frame = checklist::in_words(&frame.collect::<Vec<_>>());
+    let frame = checklist::in_words(&frame.collect::<Vec<_>>())
+        .into_iter()
+        .zip(&airframe.units);
+    let frame: Vec<String> = frame
+        .map(|(told, unit)| told + &airframe.named_pair(unit))
+        .collect();
     let lines: Vec<String> = frame.chunks(UNITS_A_LINE).map(|units| units.join("; ")).collect();
     list.say("frame", "", "", lines.join(&format!(";\n{:20}", "")))
         .json("frame", frame.join("; "))
@@ -189,8 +195,13 @@ fn gives(list: &mut List, compiled: &Compiled) {
         .in_verdict();
     let throttle = format!("{:?} to {:?}", airframe.throttle.min, airframe.throttle.max);
     let (share, needed) = (100.0 * floor / ceiling, (1e3 * compiled.least_idle).ceil() / 1e3);
+    let mut of_pairs = compiled.of_each_pair().into_iter();
+    let needs_most = of_pairs.find(|of_pair| of_pair.least_idle == compiled.least_idle);
+    let whose = or_nothing(needs_most.filter(|_| airframe.is_unlike()), |of_pair| {
+        format!(" of pair \"{}\"", of_pair.airframe.pair.name)
+    });
     let words =
-        format!("; idle gives {share:.1} % of the largest thrust, the map needs {needed:.3} at least");
+        format!("; idle gives {share:.1} % of the largest thrust, the map{whose} needs {needed:.3} at least");
     list.say("throttle", throttle, "", words)
         .json("min_idle", compiled.least_idle)
         .in_verdict();
@@ -218,7 +229,8 @@ fn layer([least, greatest]: [f64; 2], [lowest, highest]: [usize; 2]) -> String {
 /// The vehicle in hover.
 fn hover(list: &mut List, compiled: &Compiled) {
     let hover = Hover::new(compiled);
-    let flywheel = Flywheel::of(&compiled.airframe);
+    let of_pairs = compiled.airframe.of_each_pair();
+    let flywheels: Vec<Option<Flywheel>> = of_pairs.iter().map(Flywheel::of).collect();
     let missing = "add [vehicle] mass_kg to see hover and its margins";
     match &hover {
         None => list.say("mass", "", "", missing),
@@ -228,10 +240,11 @@ fn hover(list: &mut List, compiled: &Compiled) {
         }
     }
     .json("hover", &hover)
-    .json("flywheel", flywheel)
+    .json("flywheel", one_or_list(&flywheels))
     .in_verdict();
     let Some(hover) = hover else { return };
-    if let Some(rotor) = flywheel {
+    let of_rotors = of_pairs.iter().zip(&flywheels).filter_map(|(airframe, rotor)| {
+        let rotor = rotor.as_ref()?;
         let source = or_nothing(rotor.estimated_diameter_m, |diameter_m| {
             format!(", estimated by the largest thrust: {diameter_m:.2} m")
         });
@@ -239,7 +252,12 @@ fn hover(list: &mut List, compiled: &Compiled) {
             "T = J w / (2 Q) of {:.2} s in hover (J {:.1e} kg m2{source}): a step of yaw begins with {:.1} times its steady torque",
             rotor.lead_s, rotor.inertia_kg_m2, rotor.first_over_steady
         );
-        list.say("rotors' inertia", "", "", words).in_verdict();
+        Some(of_pair(airframe, of_pairs.len()) + &words)
+    });
+    let of_rotors: Vec<String> = of_rotors.collect();
+    if !of_rotors.is_empty() {
+        list.say("rotors' inertia", "", "", of_rotors.join("; "))
+            .in_verdict();
     }
     let over_weight = format!("{:.2}", hover.thrust_over_weight);
     list.say("thrust over weight", over_weight, "", " at most")
@@ -290,7 +308,7 @@ fn hover(list: &mut List, compiled: &Compiled) {
 
 /// A rotor out, and power in level flight.
 fn power(list: &mut List, compiled: &Compiled) {
-    let (airframe, pair) = (&compiled.airframe, &compiled.airframe.pair);
+    let airframe = &compiled.airframe;
     let idle = airframe.throttle.min;
     let source = |is_declared: bool| match is_declared {
         true => (json!({ "by": "declared" }), "as declared in the file".to_owned()),
@@ -299,13 +317,21 @@ fn power(list: &mut List, compiled: &Compiled) {
             format!("by the pair's polynomials, extrapolated from {idle:?} to 0"),
         ),
     };
-    let [lower, upper] = [&pair.lower_out, &pair.upper_out].map(|out| source(out.is_some()));
-    let words = match (&lower.1, &upper.1) {
-        (lower, upper) if lower == upper => format!("the other one {lower}"),
-        (lower, upper) => format!("of a lower one, the upper {lower}; of an upper one, the lower {upper}"),
-    };
-    list.say("rotor out", "", "", words)
-        .json("rotor_out", json!({ "lower_out": lower.0, "upper_out": upper.0 }));
+    let pairs = airframe.of_each_pair();
+    let told = pairs.iter().map(|of| {
+        let [lower, upper] = [&of.pair.lower_out, &of.pair.upper_out].map(|out| source(out.is_some()));
+        let words = match (&lower.1, &upper.1) {
+            (lower, upper) if lower == upper => format!("the other one {lower}"),
+            (lower, upper) => {
+                format!("of a lower one, the upper {lower}; of an upper one, the lower {upper}")
+            }
+        };
+        let json = json!({ "lower_out": lower.0, "upper_out": upper.0 });
+        (of_pair(of, pairs.len()) + &words, json)
+    });
+    let (words, json): (Vec<String>, Vec<Value>) = told.unzip();
+    list.say("rotor out", "", "", words.join("; "))
+        .json("rotor_out", one_or_list(&json));
 
     let bias = airframe.allocation.power_bias_nm_per_n;
     let share = 100.0 * airframe.power_bias_share();
@@ -341,46 +367,113 @@ fn power(list: &mut List, compiled: &Compiled) {
         .in_verdict();
 }
 
-/// The pair's map.
+/// What is said of a pair, after whose it is where units differ.
+fn of_pair(airframe: &Airframe, pairs: usize) -> String {
+    match pairs {
+        1 => String::new(),
+        _ => format!("\"{}\" ", airframe.pair.name),
+    }
+}
+
+/// The value of the pair; a list where units differ.
+fn one_or_list<T: Serialize>(values: &[T]) -> Value {
+    let json = |value: &T| serde_json::to_value(value).unwrap_or_default();
+    match values {
+        [one] => json(one),
+        _ => values.iter().map(json).collect(),
+    }
+}
+
+impl List {
+    /// Says value and words of each pair.
+    fn say_of_each(
+        &mut self,
+        name: &'static str,
+        unit: &'static str,
+        each: &[(Compiled, String, String)],
+    ) -> &mut Fact {
+        if let [(_, value, words)] = each {
+            return self.say(name, value, unit, words.as_str());
+        }
+        let told = each.iter().map(|(of, value, words)| {
+            let space = if unit.is_empty() { "" } else { " " };
+            format!("{}{value}{space}{unit}{words}", of_pair(&of.airframe, each.len()))
+        });
+        let told: Vec<String> = told.collect();
+        self.say(name, "", "", told.join("; "))
+    }
+}
+
+/// The pairs' maps.
 fn model(list: &mut List, compiled: &Compiled) {
-    let (pair, det_j) = (&compiled.airframe.pair, compiled.injectivity.least_determinant);
-    let uncertainty = pair.uncertainty.as_ref().map(|uncertainty| {
-        let (f, q) = (uncertainty.thrust_percent, uncertainty.torque_percent);
-        (uncertainty.source(), f, q)
-    });
-    let of_uncertainty = or_nothing(uncertainty, |(source, f, q)| {
-        format!(
-            ", {source}: +- {f} % of the largest thrust, {q} % of the largest torque (one standard deviation)"
-        )
-    });
-    let borrowed = &pair.borrowed_from;
-    let is_borrowed = !borrowed.is_empty();
-    let of_whom = match is_borrowed {
-        true => format!(", of {borrowed}, not yours"),
-        false => String::new(),
+    let pairs = compiled.of_each_pair();
+    let each = |told: &dyn Fn(&Compiled) -> (String, String)| -> Vec<(Compiled, String, String)> {
+        let of = |compiled: &Compiled| {
+            let (value, words) = told(compiled);
+            (compiled.clone(), value, words)
+        };
+        pairs.iter().map(of).collect()
     };
-    let words = of_whom + &of_uncertainty;
-    let uncertainty = uncertainty
-        .map(|(source, f, q)| json!({ "source": source, "thrust_percent": f, "torque_percent": q }));
-    list.say("pair", pair.basis.name(), "", words)
-        .in_verdict_if(uncertainty.is_some() || is_borrowed)
-        .json("borrowed_from", is_borrowed.then_some(borrowed))
-        .json("uncertainty", uncertainty);
-    let border = compiled.pair.border(SAMPLES).into_iter();
-    let efforts: Vec<[f64; 2]> = border.map(|at| compiled.pair.efforts(at)).collect();
-    let extent = |k: usize| {
-        let values = efforts.iter().map(|efforts| efforts[k]);
-        let widen = |[low, high]: [f64; 2], x| [low.min(x), high.max(x)];
+    let told = each(&|compiled| {
+        let pair = &compiled.airframe.pair;
+        let of_uncertainty = or_nothing(pair.uncertainty.as_ref(), |uncertainty| {
+            format!(
+                ", {}: +- {} % of the largest thrust, {} % of the largest torque (one standard deviation)",
+                uncertainty.source(),
+                uncertainty.thrust_percent,
+                uncertainty.torque_percent
+            )
+        });
+        let of_whom = match pair.borrowed_from.as_str() {
+            "" => String::new(),
+            borrowed => format!(", of {borrowed}, not yours"),
+        };
+        (pair.basis.name().to_owned(), of_whom + &of_uncertainty)
+    });
+    let maps = || pairs.iter().map(|compiled| &compiled.airframe.pair);
+    let uncertainty: Vec<_> = maps()
+        .map(|pair| {
+            pair.uncertainty.as_ref().map(|uncertainty| {
+                json!({
+                    "source": uncertainty.source(),
+                    "thrust_percent": uncertainty.thrust_percent,
+                    "torque_percent": uncertainty.torque_percent,
+                })
+            })
+        })
+        .collect();
+    let borrowed: Vec<_> = maps()
+        .map(|pair| Some(&pair.borrowed_from).filter(|from| !from.is_empty()))
+        .collect();
+    let is_in_verdict = uncertainty.iter().any(Option::is_some) || borrowed.iter().any(Option::is_some);
+    list.say_of_each("pair", "", &told)
+        .in_verdict_if(is_in_verdict)
+        .json("borrowed_from", one_or_list(&borrowed))
+        .json("uncertainty", one_or_list(&uncertainty));
+    let extent = |compiled: &Compiled, k: usize| {
+        let border = compiled.pair.border(SAMPLES).into_iter();
+        let values = border.map(|at| compiled.pair.efforts(at)[k]);
+        let widen = |[low, high]: [f64; 2], x: f64| [low.min(x), high.max(x)];
         values.fold([f64::INFINITY, f64::NEG_INFINITY], widen)
     };
-    let ([f_low, f_high], [q_low, q_high]) = (extent(0), extent(1));
-    list.say("thrust of a unit", format!("{f_low:.3} to {f_high:.3}"), "N", "");
-    let torque = format!("{q_low:.4} to {q_high:.4}");
-    list.say("torque of a unit", torque, "N m", "");
-    let idle = compiled.least_idle;
-    let words = format!(" at least: proven invertible, with idles from {idle}");
-    list.say("det J", format!("{det_j:.4e}"), "N N m", words)
-        .json("least_det_j", det_j);
+    let thrust = each(&|compiled| {
+        let [low, high] = extent(compiled, 0);
+        (format!("{low:.3} to {high:.3}"), String::new())
+    });
+    list.say_of_each("thrust of a unit", "N", &thrust);
+    let torque = each(&|compiled| {
+        let [low, high] = extent(compiled, 1);
+        (format!("{low:.4} to {high:.4}"), String::new())
+    });
+    list.say_of_each("torque of a unit", "N m", &torque);
+    let det_j = each(&|compiled| {
+        let idle = compiled.least_idle;
+        let words = format!(" at least: proven invertible, with idles from {idle}");
+        (format!("{:.4e}", compiled.injectivity.least_determinant), words)
+    });
+    let least: Vec<f64> = pairs.iter().map(|of| of.injectivity.least_determinant).collect();
+    list.say_of_each("det J", "N N m", &det_j)
+        .json("least_det_j", one_or_list(&least));
 }
 
 /// The battery's voltage.

@@ -71,6 +71,8 @@ pub struct NewFrame<'a> {
     pub file: Option<&'a str>,
     /// The stack in whose motor order the outputs are; else the upper rotors first, clockwise.
     pub outputs: Option<Stack>,
+    /// The pair's name of every unit, where they differ.
+    pub pairs: Vec<String>,
 }
 
 impl NewFrame<'_> {
@@ -82,7 +84,20 @@ impl NewFrame<'_> {
             name: None,
             file: None,
             outputs: None,
+            pairs: Vec::new(),
         }
+    }
+
+    /// Where each unit is, degrees clockwise from the nose.
+    pub fn angles_deg(&self) -> Vec<f64> {
+        let Shape {
+            units,
+            first_angle_deg,
+            ..
+        } = self.frame.shape();
+        (0..units)
+            .map(|k| first_angle_deg + 360.0 * k as f64 / units as f64)
+            .collect()
     }
 }
 
@@ -299,6 +314,13 @@ impl NewFrame<'_> {
             channels.join(", "),
             ""
         );
+        if !self.pairs.is_empty() {
+            let _ = writeln!(
+                text,
+                "pairs = {:?}\n{:<38} # the name of each unit's pair, in the same order: check it",
+                self.pairs, ""
+            );
+        }
         Ok(text)
     }
 }

@@ -109,7 +109,8 @@ pub fn import(file: &Source, pair: Option<&Source>, options: &Options<'_>) -> Re
         let airframe = Source::new("airframe.toml", format!("name = \"a\"\n{tables}"));
         let airframe = Airframe::read(&airframe).ok();
         let of_bench = options.pulses_us.or_else(|| bench_pulses(airframe.as_ref()?));
-        let map = airframe.map(|airframe| PairMap::new(&airframe.pair, &airframe.throttle));
+        let map = airframe.map(|airframe| airframe.with_mean_pair());
+        let map = map.map(|airframe| PairMap::new(&airframe.pair, &airframe.throttle));
         let told = pulses.told(of_bench.unwrap_or(USUAL_US), map.as_ref());
         imported.notes.extend(told);
     }

@@ -45,6 +45,74 @@ pub fn new(frame: &NewFrame<'_>, pair: Option<&Source>) -> Result<String, Error>
     Ok(printable_lines(&text))
 }
 
+/// The same with several pairs by name. Units in front have `front`, those behind `rear`, right and left ones `right` and
+/// `left`; other names go round the frame.
+///
+/// # Errors
+/// As [`new`]; a frame of fewer units, ranges of throttle that have nothing in common.
+pub fn new_unlike(frame: &NewFrame<'_>, pairs: &[(String, Source)]) -> Result<String, Error> {
+    let read = |(name, file): &(String, Source)| Ok((name.clone(), PairFile::read(&file.name, &file.text)?));
+    let files: Vec<(String, PairFile)> = pairs
+        .iter()
+        .map(read)
+        .collect::<Result<_, _>>()
+        .map_err(Error::Pair)?;
+    let angles = frame.angles_deg();
+    if angles.len() < files.len() {
+        let (units, pairs) = (angles.len(), files.len());
+        return Err(Error::Frame(format!(
+            "--pair: {pairs} pairs, and the frame has {units} units"
+        )));
+    }
+    let named = |wanted: &str| {
+        files
+            .iter()
+            .any(|(name, _)| name == wanted)
+            .then(|| wanted.to_owned())
+    };
+    let place = |(k, angle): (usize, f64)| {
+        let (sin, cos) = (libm::sin(angle.to_radians()), libm::cos(angle.to_radians()));
+        let along = if cos > 1e-9 { "front" } else { "rear" };
+        let across = if sin > 1e-9 { "right" } else { "left" };
+        named(along)
+            .or(named(across))
+            .unwrap_or_else(|| files[k % files.len()].0.clone())
+    };
+    let range = |key: &'static str| {
+        files
+            .iter()
+            .filter_map(move |(_, file)| file.number("throttle", key))
+    };
+    let [min, max] = [range("min").fold(0.0, f64::max), range("max").fold(1.0, f64::min)];
+    if min >= max {
+        return Err(Error::Pair(format!(
+            "--pair: no throttle from {min} to {max} is in the ranges of all pairs"
+        )));
+    }
+    let mut tables = format!(
+        "[throttle]                             # what all pairs have\nmin = {min:?}\nmax = {max:?}\n\n"
+    );
+    for (name, file) in &files {
+        tables += &file.named(name);
+    }
+    // One law for all: that of the first file that has one.
+    for table in ["voltage", "air"] {
+        let mut with = files.iter().filter(|(_, file)| file.has(table));
+        if let Some((name, file)) = with.next() {
+            tables += &format!(
+                "# [{table}] of \"{name}\": one law is for all pairs\n{}",
+                file.tables(&[table]).0
+            );
+        }
+    }
+    let frame = NewFrame {
+        pairs: angles.into_iter().enumerate().map(place).collect(),
+        ..frame.clone()
+    };
+    let text = frame.airframe(&tables, None).map_err(Error::Frame)?;
+    Ok(printable_lines(&text))
+}
+
 #[cfg(test)]
 mod tests {
     use std::collections::BTreeSet;

@@ -113,7 +113,7 @@ fn header(compiled: &Compiled, file: &str, options: &Options, notes: &[String]) 
         env!("CARGO_PKG_VERSION"),
         file,
     );
-    let borrowed = compiled.airframe.pair.borrowed();
+    let borrowed = compiled.airframe.borrowed();
     let beware = borrowed.map(|told| format!("beware: {told}"));
     if !options.own {
         let (what, unit) = writer(options.stack).unit;

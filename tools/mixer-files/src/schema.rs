@@ -67,6 +67,14 @@ fn property(key: &Key) -> Value {
         Kind::Channels => array(channel(), [2, 2]),
         Kind::ListOfChannels => json!({ "type": "array", "items": array(channel(), [2, 2]) }),
         Kind::Table(shape) => table(shape),
+        // What is said of properties holds of tables alone, what is said of items of lists.
+        Kind::TableOrTables(shape) => {
+            let mut either = table(shape);
+            either["type"] = json!(["object", "array"]);
+            either["items"] = json!({ "$ref": format!("#/properties/{}", key.name) });
+            either["minItems"] = json!(1);
+            either
+        }
         Kind::Tables(shape) => json!({ "type": "array", "items": table(shape), "minItems": 1 }),
     };
     property["description"] = json!(key.meaning());

@@ -8,7 +8,7 @@ use mixer_rt::{Conditions, Health, Wrench};
 
 use mixer_compiler::Compiled;
 use mixer_compiler::airframe::{Axis, Correction};
-use mixer_compiler::model::PairMap;
+use mixer_compiler::model::{PairMap, scales};
 
 /// A setpoint and the conditions it is asked under. The density is 0 without `[air]`.
 pub type Vector = (Wrench, Conditions);
@@ -103,9 +103,9 @@ fn conditions(volts: f64, density: f64) -> Conditions {
 /// Random setpoints of one airframe.
 struct Draw<'a> {
     compiled: &'a Compiled,
-    pair: &'a PairMap,
+    maps: Vec<PairMap>,
     /// Efforts `[f, Q]` along the border of the throttle box.
-    border: Vec<[f64; 2]>,
+    borders: Vec<Vec<[f64; 2]>>,
     /// Largest wrench on each axis: all units at their best, whatever the others lose.
     size: [f64; 4],
     /// Lowest, reference and highest voltage, V; any where the airframe ignores it.
@@ -118,18 +118,25 @@ struct Draw<'a> {
 impl<'a> Draw<'a> {
     fn new(compiled: &'a Compiled) -> Self {
         let airframe = &compiled.airframe;
-        let pair = &compiled.pair;
-        let largest = |axis| compiled.effectiveness.largest(axis as usize, pair.scale());
+        let scales = scales(airframe, [1.0; 2]);
+        let largest = |axis| compiled.effectiveness.largest(axis as usize, &scales);
         let size = Axis::ALL.map(largest);
         let values = |correction: &Correction| {
             let [low, high] = correction.range;
             [low, correction.reference, high]
         };
-        let border = pair.border(BORDER_POINTS).into_iter();
+        let maps: Vec<PairMap> = airframe
+            .pairs()
+            .map(|pair| PairMap::new(pair, &airframe.throttle))
+            .collect();
+        let border = |map: &PairMap| {
+            let border = map.border(BORDER_POINTS).into_iter();
+            border.map(|throttles| map.efforts(throttles)).collect()
+        };
         Draw {
             compiled,
-            border: border.map(|throttles| pair.efforts(throttles)).collect(),
-            pair,
+            borders: maps.iter().map(border).collect(),
+            maps,
             size,
             volts: airframe.voltage.as_ref().map_or([12.0, 14.0, 16.0], values),
             densities: airframe.air.as_ref().map_or([0.0; 3], values),
@@ -228,7 +235,7 @@ impl<'a> Draw<'a> {
     }
 
     fn attainable(&mut self, index: usize) -> Vector {
-        let [low, high] = self.pair.range();
+        let [low, high] = self.maps[0].range();
         let [lowest_v, _, highest_v] = self.volts;
         let volts = self.between(lowest_v, highest_v);
         let density = self.density();
@@ -244,8 +251,8 @@ impl<'a> Draw<'a> {
             low + (high - low) * self.between(from, to)
         };
         let throttles: Vec<[f64; 2]> = (0..units).map(|_| [throttle(), throttle()]).collect();
-        let throttles = throttles.into_iter();
-        let efforts = throttles.map(|throttles| self.pair.efforts(throttles));
+        let throttles = throttles.into_iter().zip(&self.compiled.airframe.units);
+        let efforts = throttles.map(|(throttles, unit)| self.maps[unit.pair].efforts(throttles));
         let wrench = self.wrench(efforts, self.factors(volts, density));
         (
             Wrench::from_array(wrench.map(|x| x as f32)),
@@ -277,7 +284,8 @@ impl<'a> Draw<'a> {
         let best = (0..units).map(|i| {
             let (by_f, by_q) = (factors[0] * gain(i), factors[1] * gain(units + i));
             let value = |[f, q]: &[f64; 2]| by_f * f + by_q * q;
-            let best = self.border.iter().max_by(|a, b| value(a).total_cmp(&value(b)));
+            let border = &self.borders[self.compiled.airframe.units[i].pair];
+            let best = border.iter().max_by(|a, b| value(a).total_cmp(&value(b)));
             best.copied().unwrap_or_default()
         });
         let corner = self.wrench(best, factors);

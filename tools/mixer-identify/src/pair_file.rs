@@ -16,7 +16,7 @@ impl PairFile {
     /// Reads the text of the file `name`.
     ///
     /// # Errors
-    /// A text that is no TOML or has no `[pair]`.
+    /// A text that is no TOML, has no `[pair]` or several.
     pub fn read(name: &str, text: &str) -> Result<PairFile, String> {
         let document: DocumentMut = text.parse().map_err(|error| match kind::of(text) {
             Kind::Airframe | Kind::Pair => format!("{name}: {error}"),
@@ -27,7 +27,32 @@ impl PairFile {
                 "{name}: no [pair] in it; `cargo mixer identify BENCH.csv -o pair.toml` writes one"
             ));
         }
+        if document
+            .get("pair")
+            .is_some_and(|pair| pair.as_table_like().is_none())
+        {
+            return Err(format!(
+                "{name}: a list of `[[pair]]`, of which one is wanted: keep that one as `[pair]` in a file of its own"
+            ));
+        }
         Ok(PairFile(document))
+    }
+
+    /// The table of the pair under a name, as one of several.
+    pub fn named(&self, name: &str) -> String {
+        let mut file = self.clone();
+        if let Some(pair) = file.0.get_mut("pair").and_then(Item::as_table_like_mut) {
+            pair.remove("name");
+        }
+        let (table, _) = file.tables(&["pair"]);
+        let name = format!("name = {}\n", toml_edit::Value::from(name));
+        let lines = table
+            .split_inclusive('\n')
+            .map(|line| match line.strip_prefix("[pair]") {
+                Some(rest) => format!("[[pair]]{rest}{name}"),
+                None => line.to_owned(),
+            });
+        lines.collect()
     }
 
     /// Whether it has this table.

@@ -48,6 +48,9 @@ struct Unit {
     axis: Vector3<f64>,
     spin_sign: f64,
     channels: [usize; 2],
+    pair: Pair,
+    /// J times the speed at full throttle at the reference, N m s.
+    momentum_nms: f64,
 }
 
 impl Unit {
@@ -80,10 +83,7 @@ impl<const R: usize> Default for Disturbance<R> {
 #[derive(Clone, Debug)]
 pub struct Plant<const R: usize> {
     units: Vec<Unit>,
-    pair: Pair,
     motor: Motor,
-    /// J times the speed at full throttle at the reference, N m s.
-    momentum_nms: f64,
     /// Density of the air on the bench, that of the sea level where the file has none.
     bench_kg_m3: f64,
     /// Thrust and torque of every pair over those of the file.
@@ -98,27 +98,36 @@ impl<const R: usize> Plant<R> {
     /// `mismatch` is each rotor's relative deviation in effective throttle, 0.01 being a rotor that
     /// turns one per cent faster than commanded.
     pub fn new(airframe: &Airframe, body: Body, battery: Battery, mismatch: SVector<f64, R>) -> Self {
-        let units = airframe.units.iter().map(|unit| Unit {
-            position_m: Vector3::from(unit.position_m),
-            axis: Vector3::from(unit.axis),
-            spin_sign: unit.spin_sign(airframe.pair.upper_spin),
-            channels: [unit.upper_channel, unit.lower_channel],
-        });
-        let units: Vec<Unit> = units.collect();
-        let pair = Pair::new(&airframe.pair, &airframe.throttle);
         let reference_v = airframe.voltage.as_ref().map(|voltage| voltage.reference);
         let motor = Motor::new(flywheel::exponent(airframe), NO_LOAD, reference_v);
         // What cannot hover turns without reaction.
-        let rotor = Flywheel::new(airframe, body.mass_kg, None).map(|rotor| rotor.with_lag(body.rotor_lag_s));
-        let [throttle, momentum_nms] = rotor.map_or([1.0, 0.0], |rotor| {
-            [rotor.hover_throttle, 2.0 * rotor.lead_s * rotor.torque_nm]
+        let of_pair = |airframe: &Airframe| {
+            let rotor =
+                Flywheel::new(airframe, body.mass_kg, None).map(|rotor| rotor.with_lag(body.rotor_lag_s));
+            let [throttle, momentum_nms] = rotor.map_or([1.0, 0.0], |rotor| {
+                [rotor.hover_throttle, 2.0 * rotor.lead_s * rotor.torque_nm]
+            });
+            let speed = motor.speed_at_reference(throttle);
+            (
+                Pair::new(&airframe.pair, &airframe.throttle),
+                speed,
+                momentum_nms / speed,
+            )
+        };
+        let pairs: Vec<_> = airframe.of_each_pair().iter().map(of_pair).collect();
+        let units = airframe.units.iter().map(|unit| Unit {
+            position_m: Vector3::from(unit.position_m),
+            axis: Vector3::from(unit.axis),
+            spin_sign: airframe.spin_sign(unit),
+            channels: [unit.upper_channel, unit.lower_channel],
+            pair: pairs[unit.pair].0.clone(),
+            momentum_nms: pairs[unit.pair].2,
         });
-        let speed = motor.speed_at_reference(throttle);
+        // All rotors have one lag, at the mean of their speeds in hover where pairs differ.
+        let speed = pairs.iter().map(|(_, speed, _)| speed).sum::<f64>() / pairs.len() as f64;
         Plant {
-            units,
-            pair,
+            units: units.collect(),
             motor: motor.with_lag(body.rotor_lag_s, speed),
-            momentum_nms: momentum_nms / speed,
             bench_kg_m3: airframe
                 .air
                 .as_ref()
@@ -194,7 +203,7 @@ impl<const R: usize> Plant<R> {
         let (mut force, mut torque) = (Vector3::zeros(), Vector3::zeros());
         for (unit, flutter) in self.units.iter().zip(flutter) {
             let (factor, throttles) = self.motor.at_reference(unit.of(&state.speed), volts);
-            let [f, q] = self
+            let [f, q] = unit
                 .pair
                 .efforts(throttles)
                 .map(|effort| self.scale * factor * effort);
@@ -209,7 +218,7 @@ impl<const R: usize> Plant<R> {
     pub fn rotor_momentum(&self, speed: &SVector<f64, R>) -> Vector3<f64> {
         let of_unit = |unit: &Unit| {
             let [upper, lower] = unit.of(speed);
-            unit.axis * (-unit.spin_sign * self.momentum_nms * (upper - lower))
+            unit.axis * (-unit.spin_sign * unit.momentum_nms * (upper - lower))
         };
         self.units.iter().map(of_unit).sum()
     }

@@ -111,7 +111,7 @@ fn without_air_frame_and_rotors_conserve_their_angular_momentum() {
     let airframe = vehicle::airframe().unwrap();
     let mut command = SVector::<f64, ROTORS>::repeat(0.3);
     for unit in &airframe.units {
-        let sense = 0.2 * unit.spin_sign(airframe.pair.upper_spin);
+        let sense = 0.2 * airframe.spin_sign(unit);
         command[unit.upper_channel] += sense;
         command[unit.lower_channel] -= sense;
     }
@@ -146,7 +146,7 @@ fn yaw_begins_with_the_reaction_of_the_rotors() {
             let mut command = SVector::<f64, ROTORS>::repeat(rotor.hover_throttle);
             let hover = plant.steady(&State::level(Vector3::zeros(), 0.0), &command);
             for unit in &airframe.units {
-                let sense = 1e-3 * unit.spin_sign(airframe.pair.upper_spin);
+                let sense = 1e-3 * airframe.spin_sign(unit);
                 command[unit.upper_channel] -= sense;
                 command[unit.lower_channel] += sense;
             }

@@ -224,7 +224,7 @@ class Hand {
     fill("wrench", AXES.map((_, k) => [exact(this.at.wrench[k]), exact(achieved[k]), short(isolated.given[k])]));
     this.top.turn(throttles, this.at.failed);
     const corner = ([n, nm]) => `${this.toX(byThrust * n).toFixed(1)} ${this.toY(byTorque * nm).toFixed(1)}`;
-    this.border.setAttribute("d", `M${this.scene.border.map(corner).join("L")}Z`);
+    this.border.setAttribute("d", this.scene.borders.map((border) => `M${border.map(corner).join("L")}Z`).join(""));
     [efforts, isolated.efforts].forEach((of, kind) => of.forEach(([n, nm], unit) => {
       this.dots[kind][unit].setAttribute("cx", this.toX(n));
       this.dots[kind][unit].setAttribute("cy", this.toY(nm));

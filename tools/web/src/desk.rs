@@ -176,21 +176,17 @@ impl Checked {
         draw: impl FnOnce(&Study<'_>, Option<&BenchPoints>, Option<&str>, String) -> T,
     ) -> T {
         let texts = bench.texts();
+        let study = Study::new(&self.compiled, None);
         let shown = match texts.as_slice() {
             [] => Ok(None),
-            texts => bench_points(&self.compiled, texts, Settings::default()).map(Some),
+            texts => bench_points(&study.of_pair, texts, Settings::default()).map(Some),
         };
         let (bench, refused) = match shown {
             Ok(bench) => (bench, String::new()),
             Err(refused) => (None, refused),
         };
         let digest = sha256(self.compiled.source.text.as_bytes());
-        draw(
-            &Study::new(&self.compiled, None),
-            bench.as_ref(),
-            Some(&digest),
-            refused,
-        )
+        draw(&study, bench.as_ref(), Some(&digest), refused)
     }
 
     /// A file: `px4`, `ardupilot` or `betaflight`, parameters for this mixer, with `-own` those for the stack's own;

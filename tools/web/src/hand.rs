@@ -3,7 +3,7 @@
 
 use cargo_mixer::rows;
 use mixer_compiler::airframe::{Airmode, Axis, Correction, Unit};
-use mixer_compiler::model::Physics;
+use mixer_compiler::model::{PairMap, Physics, scales};
 use mixer_facts::checklist::Checklist;
 use mixer_files::report::study::Study;
 use mixer_rt::{Conditions, Wrench};
@@ -21,7 +21,7 @@ pub struct Scene {
     pub units: Vec<Drawn>,
     /// Border of a unit's attainable set `[N, N m]` at the reference voltage and density;
     /// [`Mixed::factors`] bring it to others.
-    pub border: Vec<[f64; 2]>,
+    pub borders: Vec<Vec<[f64; 2]>>,
     /// Ends of the border at the highest voltage and density, `[[low, high] of N, of N m]`.
     pub box_n_nm: [[f64; 2]; 2],
     /// Largest of each torque (N m), 0 where the axis is not served, and of thrust (N).
@@ -59,17 +59,16 @@ pub struct Drawn {
 pub fn scene(checked: &Checked) -> Scene {
     let compiled = &checked.compiled;
     let airframe = &compiled.airframe;
-    let border: Vec<[f64; 2]> = compiled
-        .pair
-        .border(BORDER)
-        .iter()
-        .map(|t| compiled.pair.efforts(*t))
-        .collect();
+    let border = |pair| -> Vec<[f64; 2]> {
+        let map = PairMap::new(pair, &airframe.throttle);
+        map.border(BORDER).into_iter().map(|t| map.efforts(t)).collect()
+    };
+    let borders: Vec<Vec<[f64; 2]>> = airframe.pairs().map(border).collect();
     let mut extent = [[0.0, 0.0]; 2];
     let [top_v, top_density] =
         [&airframe.voltage, &airframe.air].map(|of| of.as_ref().map_or(0.0, |of| of.range[1]));
     let top = airframe.factors(top_v, top_density);
-    for point in &border {
+    for point in borders.iter().flatten() {
         for (k, [low, high]) in extent.iter_mut().enumerate() {
             *low = f64::min(*low, top[k] * point[k]);
             *high = f64::max(*high, top[k] * point[k]);
@@ -87,7 +86,7 @@ pub fn scene(checked: &Checked) -> Scene {
         axis if !airframe.allocation.controls(axis) => 0.0,
         axis => compiled
             .effectiveness
-            .largest(axis as usize, compiled.pair.scale()),
+            .largest(axis as usize, &scales(airframe, [1.0; 2])),
     });
     let of = |correction: &Correction| {
         let [low, high] = correction.range;
@@ -95,7 +94,7 @@ pub fn scene(checked: &Checked) -> Scene {
     };
     Scene {
         units: airframe.units.iter().map(drawn).collect(),
-        border,
+        borders,
         box_n_nm: extent,
         largest,
         hover_n: Study::new(compiled, None).thrust_n,

@@ -170,12 +170,11 @@ pub fn make(words: &[String], files: &Files) -> Result<Made, Vec<Fault>> {
             })
         }
         Make::New(args) => {
-            let pair = args.pair.as_deref().map(|path| files.source(path)).transpose();
-            let pair = pair.map_err(|fault| vec![fault])?;
+            let pairs = args.pairs().map_err(general)?.into_iter();
+            let pairs = pairs.map(|(name, path)| Ok((name, files.source(&path)?)));
+            let pairs: Vec<_> = pairs.collect::<Result<_, _>>().map_err(|fault| vec![fault])?;
             Ok(Made {
-                toml: args
-                    .text(pair.as_ref())
-                    .map_err(|error| general(error.to_string()))?,
+                toml: args.text(&pairs).map_err(|error| general(error.to_string()))?,
                 report: String::new(),
                 notes: Vec::new(),
             })

@@ -33,6 +33,9 @@ pub struct ReportArgs {
     /// Overwrite the file if it is there
     #[arg(long)]
     force: bool,
+    /// The pair whose maps are drawn, of an airframe with several [default: the first]
+    #[arg(long, value_name = "NAME")]
+    pair: Option<String>,
     /// Bench files of the pair, to be shown beside the model
     #[arg(long, value_name = "BENCH.csv")]
     bench: Vec<PathBuf>,
@@ -52,7 +55,7 @@ pub struct ReportArgs {
 }
 
 impl ReportArgs {
-    fn flown(&self, log: &Path, compiled: &Compiled) -> Result<Flown, ExitCode> {
+    fn flown(&self, log: &Path, compiled: &Compiled, pair: usize) -> Result<Flown, ExitCode> {
         let options = Options {
             mass_kg: self.mass,
             bench_us: self.reading.pwm_range,
@@ -61,7 +64,12 @@ impl ReportArgs {
         Ok(Flown {
             log: log.file_name().unwrap_or_default().to_string_lossy().into_owned(),
             lines: review.lines(),
-            throttles: review.flown,
+            throttles: review
+                .flown
+                .into_iter()
+                .filter(|(of, _)| *of == pair)
+                .map(|(_, at)| at)
+                .collect(),
         })
     }
 }
@@ -92,21 +100,22 @@ pub fn run(args: &ReportArgs) -> Done {
     let inputs = args.bench.iter().chain(&args.log).chain([&args.airframe]);
     file::writable(&args.output, args.force, inputs)?;
     let compiled = crate::compile(&args.airframe)?;
+    let study = Study::new(&compiled, args.thrust).of(args.pair.as_deref());
+    let mut study = study.map_err(print_error)?;
     let bench = match args.bench.as_slice() {
         [] => None,
         files => {
             let texts = bench_files::texts(files);
-            Some(bench_points(&compiled, &texts, args.reading.settings()).map_err(print_error)?)
+            Some(bench_points(&study.of_pair, &texts, args.reading.settings()).map_err(print_error)?)
         }
     };
-    for doubt in bench.iter().flat_map(|bench| bench.doubts(&compiled)) {
+    for doubt in bench.iter().flat_map(|bench| bench.doubts(&study.of_pair)) {
         crate::print_note(format_args!("warning: {doubt}"));
     }
-    let mut study = Study::new(&compiled, args.thrust);
     study.flown = args
         .log
         .as_deref()
-        .map(|log| args.flown(log, &compiled))
+        .map(|log| args.flown(log, &compiled, study.index))
         .transpose()?;
     let digest = mixer_facts::input::read_small(&args.airframe)
         .ok()

@@ -17,6 +17,9 @@ pub struct SweepArgs {
     /// Which figure
     #[arg(long, value_parser = words(&Data::ALL))]
     figure: Data,
+    /// The pair whose maps are meant, of an airframe with several [default: the first]
+    #[arg(long, value_name = "NAME")]
+    pair: Option<String>,
     /// The file to write, whole or not at all [default: standard output]
     #[arg(short, long, value_name = "FILE.csv")]
     output: Option<PathBuf>,
@@ -35,7 +38,8 @@ pub fn run(args: &SweepArgs) -> Done {
         file::writable(output, args.force, [&args.airframe])?;
     }
     let compiled = crate::compile(&args.airframe)?;
-    let study = Study::new(&compiled, args.thrust);
+    let study = Study::new(&compiled, args.thrust).of(args.pair.as_deref());
+    let study = study.map_err(print_error)?;
     let csv = sweep(&study, args.figure).map_err(print_error)?;
     crate::deliver(args.output.as_deref(), args.force, &csv)
 }

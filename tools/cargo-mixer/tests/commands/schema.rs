@@ -23,17 +23,24 @@ fn faults(schema: &Value, value: &Value, path: &str) -> Vec<String> {
         let number = value.as_f64();
         let count = value.as_array().map(Vec::len);
         match rule.as_str() {
-            "type" => hold(
-                match bound.as_str().expect("a type") {
+            "type" => {
+                let types = bound
+                    .as_array()
+                    .map_or(std::slice::from_ref(bound), Vec::as_slice);
+                let is = |of: &Value| match of.as_str().expect("a type") {
                     "object" => value.is_object(),
                     "array" => value.is_array(),
                     "string" => value.is_string(),
                     "number" => value.is_number(),
                     "integer" => value.is_u64() || value.is_i64(),
                     other => panic!("type {other}"),
-                },
-                rule,
-            ),
+                };
+                hold(types.iter().any(is), rule);
+            }
+            // A table in a list is one as it may stand alone.
+            "$ref" => {
+                inner.extend(faults(&referred(bound), value, path));
+            }
             "enum" => hold(bound.as_array().expect("words").contains(value), rule),
             // Rust's standard library has no regular expressions; names are the parser's to judge.
             "pattern" => hold(value.as_str().is_none_or(|name| !name.is_empty()), rule),
@@ -48,10 +55,14 @@ fn faults(schema: &Value, value: &Value, path: &str) -> Vec<String> {
                 count.is_none_or(|n| n as u64 <= bound.as_u64().expect("count")),
                 rule,
             ),
+            // Said of tables alone.
             "required" => {
                 for key in bound.as_array().expect("keys") {
                     let key = key.as_str().expect("a key");
-                    hold(value.get(key).is_some(), &format!("required {key}"));
+                    hold(
+                        !value.is_object() || value.get(key).is_some(),
+                        &format!("required {key}"),
+                    );
                 }
             }
             "items" => {
@@ -83,6 +94,16 @@ fn faults(schema: &Value, value: &Value, path: &str) -> Vec<String> {
     }
     found.extend(inner);
     found
+}
+
+/// What is at a place of the schema.
+fn referred(place: &Value) -> Value {
+    let place = place.as_str().and_then(|place| place.strip_prefix('#'));
+    let schema = schema::schema();
+    schema
+        .pointer(place.expect("a place"))
+        .expect("it is there")
+        .clone()
 }
 
 fn airframe(text: &str) -> Value {
@@ -134,9 +155,10 @@ fn the_parser_agrees_key_by_key() {
                  [pair.uncertainty]\nthrust_percent = 1.5\ntorque_percent = 100\nsource = \"bench\"\n";
     let forms = [
         format!(
-            "name = \"one\"\ndescription = \"x\"\n{pair}{UNIT}[inverse]\nthrust_tolerance_n = 0.1\ntorque_tolerance_nm = 0.01\n\
+            "name = \"one\"\ndescription = \"x\"\n{}{UNIT}pair = \"front\"\n[inverse]\nthrust_tolerance_n = 0.1\ntorque_tolerance_nm = 0.01\n\
              method = \"polynomial\"\ndegree = 9\n[allocation]\nairmode = \"disabled\"\naxes = [\"yaw\", \"thrust\"]\nyaw_reserve_nm = 0.0\n\
-             power_bias_nm_per_n = 0.004\n"
+             power_bias_nm_per_n = 0.004\n",
+            pair.replacen("[pair]", "[pair]\nname = \"front\"", 1)
         ),
         format!(
             "name = \"two\"\n{}{layout}{alone}",
@@ -146,6 +168,19 @@ fn the_parser_agrees_key_by_key() {
             )
         ),
         format!("name = \"three\"\n{}{layout}", with_law(&pair, points)),
+        format!(
+            "name = \"several\"\n{}{layout}",
+            pair.replacen("[pair]", "[[pair]]\nname = \"front\"", 1).replacen(
+                "[voltage]",
+                &format!("{}\n[voltage]", another(&pair)),
+                1
+            )
+        )
+        .replacen(
+            "channels",
+            "pairs = [\"front\", \"rear\", \"rear\", \"front\"]\nchannels",
+            1,
+        ),
         format!(
             "name = \"four\"\n{}[layout]\narm_m = 0.45\nunits = 3\nfirst_angle_deg = 60\nfirst_spin = \"ccw\"\n",
             with_law(&pair, other)
@@ -169,6 +204,13 @@ fn the_parser_agrees_key_by_key() {
     let keys = keys(&schema, "");
     let missed: Vec<&String> = keys.iter().filter(|key| !judged.contains(*key)).collect();
     assert!(missed.is_empty(), "keys that no form has: {missed:?}");
+}
+
+/// Its table of the pair, as that of another one.
+fn another(pair: &str) -> String {
+    let (_, table) = pair.split_once("[pair]").expect("a pair");
+    let table = table.split("\n[").next().unwrap_or_default();
+    format!("[[pair]]\nname = \"rear\"{table}")
 }
 
 /// The pair's file with this law of voltage.
@@ -198,6 +240,9 @@ fn keys(schema: &Value, path: &str) -> Vec<String> {
 
 /// `value` with one fault each that breaks one rule of the schema, by the key's path and the rule.
 fn spoilt(schema: &Value, value: &Value, path: &str) -> Vec<(String, Value)> {
+    if let Some(place) = schema.get("$ref") {
+        return spoilt(&referred(place), value, path);
+    }
     let mut found = Vec::new();
     let mut put = |rule: &str, spoilt: Value| found.push((format!("{path} {rule}"), spoilt));
     if !path.is_empty() {
@@ -225,7 +270,7 @@ fn spoilt(schema: &Value, value: &Value, path: &str) -> Vec<(String, Value)> {
                 }
                 put(rule, Value::Array(list));
             }
-            "required" => {
+            "required" if value.is_object() => {
                 for key in bound.as_array().expect("keys") {
                     let mut table = value.as_object().expect("table").clone();
                     table.remove(key.as_str().expect("key"));

@@ -60,6 +60,9 @@ const CUT_UNIT: u32 = 115;
 const ITERATION: u32 = 480;
 const ITERATION_UNIT: [u32; 2] = [355, 420];
 
+/// The pair of a unit looked up among several, in least norm or in an iteration.
+const KIND: u32 = 25;
+
 /// A slack of the request in all iterations: that of a reserve, and that of yaw beyond the request with rotors out.
 const SLACK: u32 = MOST_ITERATIONS * 60;
 
@@ -88,7 +91,7 @@ pub(super) fn with_rotors_out(compiled: &Compiled) -> Option<u32> {
 fn least_norm(compiled: &Compiled) -> Option<u32> {
     let basis = compiled.airframe.pair.basis;
     let n = compiled.tables.units.len() as u32;
-    Some(n * (compiled.evaluator.instructions(basis)? + forward(basis) + PER_UNIT))
+    Some(n * (compiled.evaluator.instructions(basis)? + forward(basis) + PER_UNIT + kind(compiled)))
 }
 
 /// The interior point method: all iterations, with so many slacks beside that of a reserve.
@@ -102,7 +105,11 @@ fn interior(compiled: &Compiled, slacks: u32) -> u32 {
         Basis::Quartic => 45,
     };
     let slacks = slacks + u32::from(compiled.tables.priorities.yaw_reserve_nm > 0.0);
-    MOST_ITERATIONS * (ITERATION + n * (unit + more)) + slacks * SLACK + CUT + n * CUT_UNIT
+    MOST_ITERATIONS * (ITERATION + n * (unit + more + kind(compiled))) + slacks * SLACK + CUT + n * CUT_UNIT
+}
+
+fn kind(compiled: &Compiled) -> u32 {
+    if compiled.tables.kinds.is_empty() { 0 } else { KIND }
 }
 
 /// Checks, and corrections of voltage and density where there are any.

@@ -22,6 +22,9 @@ struct Overhead {
 
 const PER_CORRECTION: u32 = 50;
 
+/// The pair of a unit looked up among several.
+const PER_KIND: u32 = 35;
+
 /// Requests that least norm delivers: the median over attainable ones.
 const CLOSED_FORM: Overhead = Overhead {
     per_mix: 100,
@@ -70,7 +73,8 @@ impl Overhead {
         let airframe = &compiled.airframe;
         let units = airframe.units.len() as u32;
         let corrections = airframe.voltage.iter().chain(&airframe.air).count() as u32;
-        let one = compiled.evaluator.instructions(airframe.pair.basis)?;
+        let kind = if airframe.is_unlike() { PER_KIND } else { 0 };
+        let one = compiled.evaluator.instructions(airframe.pair.basis)? + kind;
         Some(Estimate {
             instructions: self.per_mix + units * (self.per_unit + one) + PER_CORRECTION * corrections,
             error: self.error,

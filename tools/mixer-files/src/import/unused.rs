@@ -1,4 +1,4 @@
-//! What a stack's parameters say of single rotors, and the mixer, which has one pair for all units, does not use.
+//! What a stack's parameters say of single rotors, and the airframe file that is made, with one pair for all units, does not.
 
 use super::rotors::{Own, Rotor, Unit};
 
@@ -11,7 +11,7 @@ const SAME_US: f64 = 2.0;
 /// A note for each setting that differs between rotors and is not used.
 ///
 /// # Errors
-/// A rotor that the stack leaves out, and units whose rotors are not alike.
+/// A rotor that the stack leaves out.
 pub(super) fn told(rotors: &[Rotor], units: &[Unit]) -> Result<Vec<String>, String> {
     let of = |channel: usize| rotors.iter().find(|rotor| rotor.channel == channel);
     let layer = |k: usize| {
@@ -29,15 +29,16 @@ pub(super) fn told(rotors: &[Rotor], units: &[Unit]) -> Result<Vec<String>, Stri
     }
     for (name, what) in [("upper", &layers[0]), ("lower", &layers[1])] {
         if let Some([one, other]) = different(what, |own| own.thrust) {
-            return Err(format!(
-                "{}: the {name} rotors {} and {} have thrusts of {} and {}: the mixer has one pair for all units, and would be off \
-                 by that; if they are alike, give them one number",
-                other.place, one.channel, other.channel, one.own.thrust, other.own.thrust
+            notes.push(format!(
+                "the {name} rotors {} and {} have thrusts of {} and {}, and the file gives all units one pair: if they differ, name \
+                 a `[[pair]]` for each kind and write pair = \"..\" in every `[[unit]]`",
+                one.channel, other.channel, one.own.thrust, other.own.thrust
             ));
         }
         if let Some([one, other]) = different(what, |own| own.yaw) {
             notes.push(format!(
-                "the {name} rotors {} and {} have yaw factors of {} and {}, which are not used: all units get the pair's torque",
+                "the {name} rotors {} and {} have yaw factors of {} and {}, which are not used: all units get the pair's torque, \
+                 unless a `[[pair]]` is named for each kind",
                 one.channel, other.channel, one.own.yaw, other.own.yaw
             ));
         }

@@ -38,7 +38,7 @@ impl Header<'_> {
         } = self.airframe;
         let airframe = &compiled.airframe;
         let prefix = self.airframe.prefix();
-        let borrowed = airframe.pair.borrowed();
+        let borrowed = airframe.borrowed();
         let borrowed = borrowed.map_or_else(String::new, |told| format!("; beware: {told}"));
         let title = match airframe.description.trim_end_matches('.') {
             "" => format!("{}{borrowed}", airframe.name),

@@ -3,7 +3,8 @@
 use std::fmt;
 
 use mixer_compiler::Compiled;
-use mixer_compiler::airframe::Airframe;
+use mixer_compiler::airframe::{Airframe, Pair};
+use mixer_compiler::model::PairMap;
 
 /// A parameter of a flight stack.
 #[derive(Clone, Debug)]
@@ -107,12 +108,18 @@ pub(crate) const PULSES_US: [f64; 2] = [500.0, 2500.0];
 /// Pulse widths of throttle 0 and 1 on the bench, microseconds, where the airframe remembers that
 /// `identify` needed them.
 pub fn bench_pulses(airframe: &Airframe) -> Option<[f64; 2]> {
-    let options = &airframe.pair.bench_options;
-    let at = options.iter().position(|option| option == "--pwm-range")?;
-    let (low, high) = options.get(at + 1)?.split_once(',')?;
-    let us = [low.parse().ok()?, high.parse().ok()?];
-    let [least, most] = PULSES_US;
-    us.iter().all(|us| (least..=most).contains(us)).then_some(us)
+    let of = |pair: &Pair| -> Option<[f64; 2]> {
+        let options = &pair.bench_options;
+        let at = options.iter().position(|option| option == "--pwm-range")?;
+        let (low, high) = options.get(at + 1)?.split_once(',')?;
+        let us = [low.parse().ok()?, high.parse().ok()?];
+        let [least, most] = PULSES_US;
+        us.iter().all(|us| (least..=most).contains(us)).then_some(us)
+    };
+    // Benches that disagree say nothing of the vehicle.
+    let mut all = airframe.pairs().map(of);
+    let first = all.next()?;
+    first.filter(|_| all.all(|other| other == first))
 }
 
 /// To two decimals.
@@ -120,10 +127,10 @@ pub(crate) fn hundredths(value: f64) -> f64 {
     (100.0 * value).round() / 100.0
 }
 
-/// Of one unit at the reference voltage, N.
-pub(crate) fn largest_thrust(compiled: &Compiled) -> f64 {
-    let [_, max] = compiled.pair.range();
-    compiled.pair.efforts([max, max])[0]
+/// The map of the mean unit.
+fn mean_map(compiled: &Compiled) -> PairMap {
+    let airframe = compiled.airframe.with_mean_pair();
+    PairMap::new(&airframe.pair, &airframe.throttle)
 }
 
 /// Points at which a curve is fitted.
@@ -134,15 +141,16 @@ const POINTS: u32 = 50;
 /// describe a rotor by this curve. `stretched` counts t from 0 at the least throttle to 1 at the
 /// largest.
 pub(crate) fn curve(compiled: &Compiled, stretched: bool) -> f64 {
-    let [min, max] = compiled.pair.range();
-    let full = largest_thrust(compiled);
+    let map = mean_map(compiled);
+    let [min, max] = map.range();
+    let full = map.efforts([max, max])[0];
     let (mut products, mut squares) = (0.0, 0.0);
     for k in 0..=POINTS {
         let share = f64::from(k) / f64::from(POINTS);
         let throttle = min + (max - min) * share;
         let t = if stretched { share } else { throttle };
         let bend = t * t - t;
-        products += bend * (compiled.pair.efforts([throttle, throttle])[0] / full - t);
+        products += bend * (map.efforts([throttle, throttle])[0] / full - t);
         squares += bend * bend;
     }
     (products / squares).clamp(0.0, 1.0)

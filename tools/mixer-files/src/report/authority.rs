@@ -3,6 +3,7 @@
 
 use mixer_compiler::airframe::Axis;
 use mixer_compiler::hover::Search;
+use mixer_compiler::model::scales;
 use mixer_rt::Health;
 
 use crate::report::study::{Condition, Study};
@@ -83,8 +84,8 @@ fn reach(
         study.mix(wrench, condition).1
     };
     // No throttles exceed the torque of all units at their largest thrust and torque.
-    let scale = study.pair.scale();
-    let most = study.compiled.effectiveness.largest(axis as usize, scale);
+    let scales = scales(&study.compiled.airframe, [1.0; 2]);
+    let most = study.compiled.effectiveness.largest(axis as usize, &scales);
     search.largest(most, delivered)
 }
 

@@ -102,7 +102,7 @@ pub fn throttles(
 }
 
 fn answer(study: &Study<'_>, (throttles, within): (Vec<[f64; 2]>, bool)) -> Answer {
-    let efforts: Vec<[f64; 2]> = throttles.iter().map(|&pair| study.pair.efforts(pair)).collect();
+    let efforts: Vec<[f64; 2]> = study.efforts_of(&throttles);
     Answer {
         wrench: study.wrench(&efforts),
         throttles,

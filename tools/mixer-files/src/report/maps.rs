@@ -226,5 +226,5 @@ fn outline(study: &Study<'_>, figure: &mut Figure) {
 
 /// The proven bound of the error at the reference voltage, N or N m.
 pub fn error_bound(study: &Study<'_>, effort: Effort) -> f64 {
-    study.compiled.certificate.reference[effort as usize]
+    study.of_pair.certificate.reference[effort as usize]
 }

@@ -98,6 +98,7 @@ pub fn content(study: &Study<'_>, bench: Option<&BenchPoints>, digest: Option<&s
     let body = html! {
         h1 { (printable(&airframe.name)) }
         p.lead { (printable(&airframe.description)) }
+        @if let Some(whose) = study.whose() { p { (printable(&whose)) } }
         nav id="contents" aria-label="Contents" { @for (anchor, title, _) in &sections { a href={ "#" (anchor) } { (title) } " " } }
         (warnings(study, bench))
         (table::summary(study, &facts, digest))
@@ -121,7 +122,7 @@ pub fn content(study: &Study<'_>, bench: Option<&BenchPoints>, digest: Option<&s
 /// What is plausibly a mistake; nothing where there is none.
 fn warnings(study: &Study<'_>, bench: Option<&BenchPoints>) -> Markup {
     let records = mixer_compiler::lint(study.compiled).records();
-    let doubts = bench.map_or_else(Vec::new, |bench| bench.doubts(study.compiled));
+    let doubts = bench.map_or_else(Vec::new, |bench| bench.doubts(&study.of_pair));
     html! {
         @if !records.is_empty() || !doubts.is_empty() {
             ul.warnings {
@@ -284,7 +285,7 @@ fn authority_section(study: &Study<'_>) -> Markup {
             "The largest torque about one axis that the compiled mixer delivers in full, within its tolerance, while it \
              holds the thrust and no other torque is asked, found by asking the mixer itself. "
             (rotor_out)
-            @if let Some(uncertainty) = &study.compiled.airframe.pair.uncertainty {
+            @if let Some(uncertainty) = &study.of_pair.airframe.pair.uncertainty && !off.is_empty() {
                 " The pair is " (uncertainty.source()) ": by one standard deviation of its uncertainty the true torques are off by "
                 (off.join(", ")) "."
             }
@@ -389,7 +390,7 @@ fn inverse_section(study: &Study<'_>) -> Markup {
 }
 
 fn error_section(study: &Study<'_>, fields: &[crate::report::field::Field; 2]) -> Markup {
-    let observed = &study.compiled.residual;
+    let observed = &study.of_pair.residual;
     let at = match study.at_reference().as_str() {
         "" => " with the pair\u{2019}s map".to_owned(),
         at => at.to_owned(),
@@ -434,7 +435,7 @@ fn cost_section(study: &Study<'_>, facts: &[Fact]) -> Markup {
 
 /// What the script needs: the forward map and the error on its grid.
 fn model(study: &Study<'_>, errors: &[crate::report::field::Field; 2]) -> serde_json::Value {
-    let pair = &study.compiled.airframe.pair;
+    let pair = &study.of_pair.airframe.pair;
     let coefficients = pair.thrust_n.iter().zip(&pair.torque_nm);
     let terms = pair.basis.exponents().iter().zip(coefficients);
     let terms = terms.map(|(&(i, j), (&f, &q))| serde_json::json!([i, j, f, q]));

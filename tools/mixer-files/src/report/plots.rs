@@ -286,7 +286,9 @@ pub fn hover_throttle(study: &Study<'_>, levels: &[Level]) -> Option<Figure> {
 
 /// Electrical power in level flight against thrust; `None` where the file has no power map.
 pub fn power(study: &Study<'_>, levels: &[Level]) -> Option<Figure> {
-    study.compiled.airframe.pair.power.as_ref()?;
+    if study.compiled.airframe.pairs().any(|pair| pair.power.is_none()) {
+        return None;
+    }
     let curve = curve(levels, |level| level.power_w);
     // The range is that of the finite ones.
     let powers = curve.iter().map(|point| point[1]);

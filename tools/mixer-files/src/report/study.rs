@@ -1,7 +1,7 @@
 //! An airframe under study: what all figures are drawn from.
 
 use mixer_compiler::Compiled;
-use mixer_compiler::airframe::Axis;
+use mixer_compiler::airframe::{Axis, Pair};
 use mixer_compiler::model::PairMap;
 use mixer_rt::{Health, Wrench};
 
@@ -12,6 +12,10 @@ use crate::report::number::round_half_digit;
 pub struct Study<'a> {
     /// The airframe.
     pub compiled: &'a Compiled,
+    /// The pair whose maps are drawn, as if all units had it.
+    pub of_pair: Compiled,
+    /// Where it stands among the airframe's pairs.
+    pub index: usize,
     /// Its forward map in f64.
     pub pair: PairMap,
     /// Total thrust of the comparisons at constant thrust, N.
@@ -49,6 +53,8 @@ impl<'a> Study<'a> {
     pub fn new(compiled: &'a Compiled, thrust_n: Option<f64>) -> Self {
         let mut study = Study {
             compiled,
+            of_pair: compiled.of_each_pair().swap_remove(0),
+            index: 0,
             pair: compiled.pair.clone(),
             thrust_n: round_half_digit(HOVER_SHARE * f64::from(compiled.thrust_range_n[1])),
             flown: None,
@@ -59,6 +65,43 @@ impl<'a> Study<'a> {
         study
     }
 
+    /// The same study with the maps of the pair of this name; the first one without.
+    ///
+    /// # Errors
+    /// A name that no pair has.
+    pub fn of(mut self, name: Option<&str>) -> Result<Self, String> {
+        let Some(name) = name else { return Ok(self) };
+        let pairs = self.compiled.of_each_pair();
+        let names: Vec<&str> = self
+            .compiled
+            .airframe
+            .pairs()
+            .map(|pair| pair.name.as_str())
+            .collect();
+        let found = names.iter().position(|known| *known == name);
+        let index = found.ok_or_else(|| match names.as_slice() {
+            [_] => format!("--pair {name}: the airframe has one pair; leave --pair out"),
+            names => format!("--pair {name}: the airframe's pairs are {}", names.join(", ")),
+        })?;
+        self.index = index;
+        self.of_pair = pairs[index].clone();
+        self.pair = self.of_pair.pair.clone();
+        Ok(self)
+    }
+
+    /// Whose maps are drawn, where units differ.
+    pub fn whose(&self) -> Option<String> {
+        let name = |pair: &Pair| format!("\"{}\"", pair.name);
+        let others: Vec<String> = self.compiled.airframe.pairs().map(name).collect();
+        let own = name(&self.of_pair.airframe.pair);
+        self.compiled.airframe.is_unlike().then(|| {
+            format!(
+                "The maps of a pair are those of {own} among {}; `report --pair` draws another\u{2019}s.",
+                others.join(", ")
+            )
+        })
+    }
+
     /// The weight, N; `None` where the file has no mass, or the weight is not carried at the
     /// reference voltage.
     pub fn hover_n(&self) -> Option<f64> {
@@ -67,7 +110,7 @@ impl<'a> Study<'a> {
         delivered.then_some(weight_n)
     }
 
-    /// Throttles `[u, l]` in hover at the reference voltage, those of units that differ; empty
+    /// Throttles `[u, l]` of the pair in hover at the reference voltage, those of units that differ; empty
     /// where there is no hover.
     pub fn hover_throttles(&self) -> Vec<[f64; 2]> {
         let Some(weight_n) = self.hover_n() else {
@@ -75,7 +118,8 @@ impl<'a> Study<'a> {
         };
         let (throttles, _) = self.mix([0.0, 0.0, 0.0, weight_n], &self.reference());
         let mut distinct: Vec<[f64; 2]> = Vec::new();
-        for pair in throttles {
+        let units = self.compiled.airframe.units.iter().zip(throttles);
+        for (_, pair) in units.filter(|(unit, _)| unit.pair == self.index) {
             let same = |other: &[f64; 2]| (0..2).all(|k| (other[k] - pair[k]).abs() < 1e-3);
             if !distinct.iter().any(same) {
                 distinct.push(pair);
@@ -88,6 +132,15 @@ impl<'a> Study<'a> {
     pub fn at_reference(&self) -> String {
         let voltage = self.compiled.airframe.voltage.as_ref();
         voltage.map_or_else(String::new, |voltage| format!(" at {} V", voltage.reference))
+    }
+
+    /// What units give at throttles `[u, l]` each, N and N m at the reference voltage.
+    pub fn efforts_of(&self, throttles: &[[f64; 2]]) -> Vec<[f64; 2]> {
+        let airframe = &self.compiled.airframe;
+        let map = |pair| PairMap::new(pair, &airframe.throttle);
+        let maps: Vec<PairMap> = airframe.pairs().map(map).collect();
+        let units = airframe.units.iter().zip(throttles);
+        units.map(|(unit, at)| maps[unit.pair].efforts(*at)).collect()
     }
 
     /// Throttles `[u, l]` from `[s, t]` in the unit square.
@@ -104,7 +157,7 @@ impl<'a> Study<'a> {
     /// Throttles `[u, l]` that the emitted inverse gives for attainable `[f (N), Q (N m)]`; `None`
     /// where they are not.
     pub fn inverse(&self, efforts: [f64; 2]) -> Option<[f64; 2]> {
-        let tables = &self.compiled.tables;
+        let tables = &self.of_pair.tables;
         let asked = efforts.map(|effort| effort as f32);
         let found = tables.throttles(asked).map(f64::from);
         self.pair.inverse(found, efforts).and(Some(found))
@@ -113,7 +166,7 @@ impl<'a> Study<'a> {
     /// What the emitted inverse, run in f32 by `mixer-rt`, misses of the efforts at `throttles`,
     /// signed, N and N m.
     pub fn error(&self, throttles: [f64; 2]) -> [f64; 2] {
-        let tables = &self.compiled.tables;
+        let tables = &self.of_pair.tables;
         let efforts = self.pair.efforts(throttles);
         let asked = efforts.map(|effort| effort as f32);
         let found = tables.throttles(asked);

@@ -225,7 +225,7 @@ impl Range {
 }
 
 /// Where on the pair's map the vehicle flew.
-fn flown(rows: &Rows, compiled: &Compiled) -> Vec<[f64; 2]> {
+fn flown(rows: &Rows, compiled: &Compiled) -> Vec<(usize, [f64; 2])> {
     let units = &compiled.airframe.units;
     let whole: Vec<&Row> = rows
         .rows
@@ -237,7 +237,7 @@ fn flown(rows: &Rows, compiled: &Compiled) -> Vec<[f64; 2]> {
         let of = |channel: usize| f64::from(row.throttle[channel]);
         units
             .iter()
-            .map(move |unit| [of(unit.upper_channel), of(unit.lower_channel)])
+            .map(move |unit| (unit.pair, [of(unit.upper_channel), of(unit.lower_channel)]))
     });
     points.step_by(every).collect()
 }

@@ -46,9 +46,10 @@ pub struct Review {
     pub stopped: Vec<Stopped>,
     /// What deserves a look, a sentence each.
     pub warnings: Vec<String>,
-    /// Throttles `[upper, lower]` of all pairs in the air, some hundreds of them.
+    /// Throttles `[upper, lower]` of units in the air, some hundreds of them, each after where its pair stands among the
+    /// airframe's.
     #[serde(skip)]
-    pub flown: Vec<[f64; 2]>,
+    pub flown: Vec<(usize, [f64; 2])>,
 }
 
 /// Hover by the log, all rotors turning; `None` where it does not hover.

@@ -4,6 +4,7 @@ use mixer_compiler::Compiled;
 use mixer_compiler::airframe::{Axis, Correction};
 use mixer_compiler::diagnostic::rounded;
 use mixer_compiler::hover::band;
+use mixer_compiler::model::scales;
 
 use crate::review::flight::Flight;
 use crate::review::result::{Range, Review};
@@ -128,7 +129,10 @@ fn centre(seen: &WarningInputs<'_>) -> Vec<String> {
 }
 
 fn yaw(seen: &WarningInputs<'_>) -> Vec<String> {
-    let all_nm = seen.compiled.pair.scale()[1] * seen.compiled.airframe.units.len() as f64;
+    let all_nm: f64 = scales(&seen.compiled.airframe, [1.0; 2])
+        .iter()
+        .map(|scale| scale[1])
+        .sum();
     let left_nm = seen.review.hover.yaw_nm.unwrap_or_default();
     when(left_nm.abs() > YAW_LEFT * all_nm, || {
         format!(

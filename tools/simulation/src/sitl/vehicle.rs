@@ -78,6 +78,12 @@ impl Vehicle {
         let mut flown = own.clone();
         if let Some(path) = &arguments.map {
             let other = read(path)?;
+            if own.is_unlike() || other.is_unlike() {
+                return Err(format!(
+                    "--map {}: with several [[pair]] the map that is flown cannot be another file's",
+                    path.display()
+                ));
+            }
             // The battery is the vehicle's, what a voltage does to the pair is the other file's.
             flown.pair = other.pair;
             flown.throttle = other.throttle;
