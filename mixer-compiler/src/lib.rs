@@ -6,7 +6,7 @@
 //!
 //! Versions keep their promise for what is public without the feature `unstable`. With it the project's own packages
 //! see the rest, which changes without notice.
-#![cfg_attr(not(feature = "unstable"), allow(dead_code, unused_imports))]
+#![cfg_attr(not(feature = "unstable"), allow(dead_code, unreachable_pub, unused_imports))]
 
 #[cfg(not(feature = "unstable"))]
 mod airframe;
