@@ -60,7 +60,7 @@ impl Compiled {
 
     /// Output channels: two per unit.
     pub fn channels(&self) -> usize {
-        2 * self.airframe.units.len()
+        self.airframe.rotors()
     }
 
     /// Least and largest thrust that is delivered without torque at the reference voltage, N.

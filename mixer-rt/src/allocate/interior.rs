@@ -116,8 +116,8 @@ impl<P: Quantity, I: Inverse, S: AllocationMethod<P>, const VERTICAL: bool> Fram
         }
     }
 
-    /// Turns the columns, which least norm with rotors out has left, into the request's rows and puts the unknowns in the middle; the multipliers
-    /// are 0.
+    /// Turns the columns into the request's rows and puts the unknowns in the middle; the multipliers are 0. With rotors
+    /// out, least norm has left the columns.
     #[inline(never)]
     fn begin(&self, request: &Request, units: &mut [UnitState], is_whole: bool) -> [f32; 4] {
         for (unit, table) in rolled(units.iter_mut().zip(self.tables.units)) {

@@ -89,7 +89,6 @@ pub fn stated(file: &Source) -> Result<Stated, String> {
 /// A file that does not describe coaxial pairs: file, line, and what would serve.
 pub fn import(file: &Source, pair: Option<&Source>, options: &Options<'_>) -> Result<Import, String> {
     let mut imported = read(file, options.arm_m)?;
-    let has_places = kind::of(&file.text) != Kind::Betaflight && Parameters::read(file)?.has("CA_ROTOR0_PX");
     let units = pairs::pair(&imported.rotors, options.upper)?;
     imported.notes.extend(unused::told(&imported.rotors, &units)?);
     let pair = pair
@@ -119,7 +118,7 @@ pub fn import(file: &Source, pair: Option<&Source>, options: &Options<'_>) -> Re
         .map_or_else(|| text::default_name(units.len()), str::to_owned);
     Ok(Import {
         text: text::airframe(&name, file, &imported, &tables),
-        has_places,
+        has_places: imported.has_places,
         notes: imported.notes,
     })
 }

@@ -95,6 +95,8 @@ pub(crate) struct Imported {
     /// The stack and the frame, for people.
     pub(crate) origin: String,
     pub(crate) rotors: Vec<Rotor>,
+    /// Whether the file has the place of each rotor, so that no arm counts.
+    pub(crate) has_places: bool,
     /// The other motors of the stack.
     pub(crate) left_out: Vec<LeftOut>,
     /// What makes the rotors the stack's first motors.

@@ -95,10 +95,11 @@ impl<'a> Build<'a> {
         let mut written = Ok(());
         mixer_rt::sources(&mut |name, text| {
             let path = folder.join(name);
-            let made = path.parent().map_or(Ok(()), fs::create_dir_all);
-            let made = made.and_then(|()| fs::write(&path, text));
-            let written_before = std::mem::replace(&mut written, Ok(()));
-            written = written_before.and(made.map_err(|error| fault(&path, &error)));
+            if written.is_ok() {
+                let made = path.parent().map_or(Ok(()), fs::create_dir_all);
+                let made = made.and_then(|()| fs::write(&path, text));
+                written = made.map_err(|error| fault(&path, &error));
+            }
         });
         written
     }

@@ -46,6 +46,7 @@ pub(crate) fn read(parameters: &Parameters) -> Result<Imported, String> {
     let mut imported = Imported {
         origin: format!("{} rotors of PX4", upright.len()),
         rotors: rotors.collect::<Result<_, _>>()?,
+        has_places: true,
         left_out: left_out.collect(),
         first_motors: "give it the last number of CA_ROTORn, and its output that motor (PWM_MAIN_FUNCn)",
         range_v: battery(parameters),
