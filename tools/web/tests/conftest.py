@@ -4,6 +4,7 @@ Every visit is held to one rule: no console message, no error, nothing that the 
 request but for the page itself. It has no builtin of JavaScript that the oldest browsers of docs/page.md lack.
 """
 
+import collections
 import functools
 import http.server
 import os
@@ -24,6 +25,10 @@ PROGRAM = Path(os.environ.get("MIXER_COMMAND", TARGET / "debug/cargo-mixer"))
 # Seconds until what was waited for is taken for missing: a machine may be busy with much else.
 PATIENCE = 120
 expect.set_options(timeout=PATIENCE * 1000)
+
+# Chromium drops, in silence, what a page saves beyond this number of files within as many seconds: `kBurstDownloadLimit` in
+# third_party/blink/renderer/core/frame/local_frame.cc, and a tenth of a second. A hand is slower, a test is not.
+AT_ONCE = 10, 1.1
 
 # What Chromium would fetch for itself is switched off: a test's machine may have no network.
 QUIET = ["--no-sandbox", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync", "--disable-quic"]
@@ -153,6 +158,7 @@ class Desk:
     def __init__(self, page, shell):
         self.page, self.shell = page, shell
         self.see, self.click = page.locator, page.click
+        self.saved = collections.deque([-AT_ONCE[1]] * AT_ONCE[0], AT_ONCE[0])
 
     def says(self, text):
         return self.shows("#status", text)
@@ -203,8 +209,10 @@ class Desk:
         """Follows the link of a file; the name and the bytes of what was saved."""
         link = self.link(output)
         expect(link).to_have_attribute("href", re.compile("^blob:"))
+        time.sleep(max(0, self.saved[0] + AT_ONCE[1] - time.monotonic()))
         with self.page.expect_download() as download:
             link.click()
+        self.saved.append(time.monotonic())
         return download.value.suggested_filename, Path(download.value.path()).read_bytes()
 
     def run_shown(self):
