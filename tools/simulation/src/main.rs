@@ -61,7 +61,7 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     for Comparison { scenario, flights } in &comparisons {
         let Some(first) = flights.first() else { continue };
         if let Some(folder) = &arguments.plots {
-            for (name, svg) in figures::draw(scenario, first)? {
+            for (name, svg) in figures::draw(scenario, first) {
                 fs::write(folder.join(name), svg)?;
             }
         }

@@ -8,6 +8,7 @@ mod bar;
 mod curves;
 mod legend;
 mod mark;
+mod panels;
 pub(crate) mod path;
 mod reading;
 
@@ -279,18 +280,21 @@ impl Figure {
     }
 
     fn drawn(&self, entries: &[legend::Entry]) -> String {
-        let height = self.size[1];
-        let rows = legend::rows(entries, WIDTH - MARGIN[0]);
-        let full_height = MARGIN[1] + height + MARGIN[3] + legend::ROW * rows.len() as f64;
-        let mut svg = String::new();
-        let _ = writeln!(
-            svg,
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"figure\" viewBox=\"0 0 {WIDTH} {full_height}\" \
-             role=\"{}\" aria-label=\"{}\"{}>",
+        let (inner, height) = self.inner(entries);
+        format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"figure\" viewBox=\"0 0 {WIDTH} {height}\" \
+             role=\"{}\" aria-label=\"{}\"{}>\n{inner}</svg>\n",
             if self.is_along_curves() { "group" } else { "img" },
             escaped(&self.title),
             self.attributes()
-        );
+        )
+    }
+
+    /// What the picture holds, and its height, px.
+    fn inner(&self, entries: &[legend::Entry]) -> (String, f64) {
+        let height = self.size[1];
+        let rows = legend::rows(entries, WIDTH - MARGIN[0]);
+        let mut svg = String::new();
         if !self.areas.is_empty() {
             let _ = write!(svg, "<g class=\"areas\">\n{}</g>\n", self.areas);
         }
@@ -301,8 +305,8 @@ impl Figure {
             bar.draw(&mut svg, [MARGIN[0] + self.size[0], MARGIN[1]], self.size[1]);
         }
         legend::draw(&mut svg, [MARGIN[0], MARGIN[1] + height + MARGIN[3]], &rows);
-        svg.push_str("</svg>\n");
-        svg
+        let full_height = MARGIN[1] + height + MARGIN[3] + legend::ROW * rows.len() as f64;
+        (svg, full_height)
     }
 
     /// Grid, frame, ticks and labels.

@@ -52,6 +52,11 @@ pub fn yaw_step(mixers: &[(String, Vec<[f64; 2]>)]) -> String {
     styled(&figure.svg())
 }
 
+/// Plots in columns, each below its heading, and all below a title.
+pub fn panels(title: &str, columns: &[(String, Vec<Figure>)]) -> String {
+    styled(&Figure::panels(title, columns))
+}
+
 /// A picture with the style that the page would give it, and a ground of its own: documents may be
 /// light or dark.
 fn styled(svg: &str) -> String {
