@@ -154,6 +154,12 @@ impl<const R: usize> Plant<R> {
         Plant { scale, ..self }
     }
 
+    /// The same vehicle with another battery.
+    #[must_use]
+    pub fn on(self, battery: Battery) -> Self {
+        Plant { battery, ..self }
+    }
+
     /// The state with all rotors in steady state under `command`.
     #[must_use]
     pub fn steady(&self, state: &State<R>, command: &SVector<f64, R>) -> State<R> {

@@ -69,100 +69,64 @@ pub struct Vehicle {
 }
 
 impl Vehicle {
-    /// Reads the airframe, and that of `--map`.
+    /// The vehicle of the airframe file and of the flags.
     ///
     /// # Errors
     /// A file that cannot be read or is refused; a mass that nobody states or that is too much.
     pub fn new(arguments: &Arguments) -> Result<Vehicle, String> {
         let own = read(&arguments.airframe)?;
-        let mut flown = own.clone();
-        if let Some(path) = &arguments.map {
-            let other = read(path)?;
-            if own.is_unlike() || other.is_unlike() {
-                return Err(format!(
-                    "--map {}: with several [[pair]] the map that is flown cannot be another file's",
-                    path.display()
-                ));
-            }
-            // The battery is the vehicle's, what a voltage does to the pair is the other file's.
-            flown.pair = other.pair;
-            flown.throttle = other.throttle;
-            flown.voltage = other.voltage;
-            flown.air = other.air;
-        }
+        let flown = match &arguments.map {
+            Some(path) => with_map(&own, path)?,
+            None => own.clone(),
+        };
         let rotors = own.rotors();
         if rotors > MOST_ROTORS {
-            let most = MOST_ROTORS;
-            return Err(format!("{rotors} rotors: the stacks have outputs for {most}"));
+            return Err(format!(
+                "{rotors} rotors: the stacks have outputs for {MOST_ROTORS}"
+            ));
         }
         let path = arguments.airframe.display();
-        let mass_kg = arguments
-            .mass_kg
-            .or(own.vehicle.as_ref().map(|vehicle| vehicle.mass_kg))
-            .ok_or_else(|| format!("{path} has no [vehicle] mass_kg: add it, or give --mass-kg"))?;
-        let stated = own.vehicle.as_ref().and_then(|vehicle| vehicle.inertia_kg_m2);
-        let stated = arguments.inertia.or(stated).map(Vector3::from);
-        let inertia_kg_m2 = stated.unwrap_or_else(|| inertia(&own, mass_kg));
-        let weight = mass_kg * GRAVITY_M_S2;
+        let stated = own.vehicle.as_ref();
+        let mass_kg = arguments.mass_kg.or(stated.map(|vehicle| vehicle.mass_kg));
+        let mass_kg =
+            mass_kg.ok_or_else(|| format!("{path} has no [vehicle] mass_kg: add it, or give --mass-kg"))?;
         let too_heavy = || {
+            let weight = mass_kg * GRAVITY_M_S2;
             format!(
                 "{path}: the vehicle weighs {weight:.1} N, which the rotors do not lift: a smaller mass, or other rotors"
             )
         };
-        let stated = own
-            .vehicle
-            .as_ref()
-            .and_then(|vehicle| vehicle.rotor_inertia_kg_m2);
-        let rotor =
-            Flywheel::new(&flown, mass_kg, arguments.rotor_inertia.or(stated)).ok_or_else(too_heavy)?;
-        let rotor = arguments.rotor_lag.map_or(rotor, |lag_s| rotor.with_lag(lag_s));
-        let (lag_s, [least, most]) = (rotor.lag_s(), LAGS_S);
-        if !(least..=most).contains(&lag_s) {
-            return Err(format!(
-                "{path}: rotors with a lag of {lag_s:.4} s, beyond {least} to {most} s: give another --rotor-inertia or --rotor-lag"
-            ));
-        }
+        let rotor_inertia = || stated?.rotor_inertia_kg_m2;
+        let rotor = Flywheel::new(&flown, mass_kg, arguments.rotor_inertia.or_else(rotor_inertia));
+        let rotor = rotor.ok_or_else(too_heavy)?;
+        let rotor = with_lag(rotor, arguments.rotor_lag).map_err(|reason| format!("{path}: {reason}"))?;
+        let moments = arguments.inertia.or_else(|| stated?.inertia_kg_m2);
         let body = Body {
             mass_kg,
-            inertia_kg_m2,
-            rotor_lag_s: lag_s,
+            inertia_kg_m2: moments.map_or_else(|| inertia(&own, mass_kg), Vector3::from),
+            rotor_lag_s: rotor.lag_s(),
         };
-        let reference_v = own.voltage.as_ref().map(|voltage| voltage.reference);
-        let full_v = arguments.volts.or(reference_v).unwrap_or(ANY_VOLTAGE_V);
-        let fall_v = FALL_OVER_CAPACITY * full_v;
-        let mut battery = Battery {
-            full_v,
-            slope_v_per_ah: arguments.capacity.map_or(0.0, |capacity| fall_v / capacity),
-            resistance_ohm: 0.0,
-            full_throttle_a: 0.0,
-        };
+        let battery = unloaded(&own, arguments);
         let mismatch = spread(arguments.spread, arguments.seed, rotors);
-        let thin = arguments.density_altitude.or(arguments.altitude);
-        let bench_m = own.air.as_ref().map(|air| atmosphere::altitude_of(air.reference));
-        let plant = |battery: Battery| {
-            let plant = Plant::new(&flown, body, battery, mismatch).scaled(arguments.thrust_scale);
-            let Some(altitude_m) = thin else { return Ok(plant) };
-            let density = atmosphere::density_at(altitude_m);
-            plant
-                .in_air(density)
-                .map_err(|reason| format!("{path}: {reason}"))
+        let mut plant = Plant::new(&flown, body, battery, mismatch).scaled(arguments.thrust_scale);
+        let thin_m = arguments.density_altitude.or(arguments.altitude);
+        if let Some(altitude_m) = thin_m {
+            let thin = plant.in_air(atmosphere::density_at(altitude_m));
+            plant = thin.map_err(|reason| format!("{path}: {reason}"))?;
+        }
+        // Without load first: the throttle in hover sets the current.
+        let hover_throttle = plant.hover_throttle().ok_or_else(too_heavy)?;
+        let power_w = flown.power_w(&vec![hover_throttle; rotors]);
+        let power_w = power_w.unwrap_or(HOVER_W_PER_KG * mass_kg);
+        let of_full_throttle = plant.current_a(&plant.alike(hover_throttle));
+        let battery = Battery {
+            resistance_ohm: arguments.resistance,
+            full_throttle_a: power_w / (battery.full_v * of_full_throttle),
+            ..battery
         };
-        // Without resistance first: the throttle in hover sets the current.
-        let rough = plant(battery)?;
-        let hover = |plant: &Plant<MOST_ROTORS>| plant.hover_throttle().ok_or_else(too_heavy);
-        let hover_throttle = hover(&rough)?;
-        let power_w = flown
-            .power_w(&vec![hover_throttle; rotors])
-            .unwrap_or(HOVER_W_PER_KG * mass_kg);
-        let cubes = rough
-            .alike(hover_throttle)
-            .speed
-            .map(|speed| speed * speed * speed)
-            .sum();
-        battery.full_throttle_a = power_w / (full_v * cubes);
-        battery.resistance_ohm = arguments.resistance;
-        let plant = plant(battery)?;
-        let hover_throttle = hover(&plant)?;
+        let plant = plant.on(battery);
+        let hover_throttle = plant.hover_throttle().ok_or_else(too_heavy)?;
+        let bench_m = own.air.as_ref().map(|air| atmosphere::altitude_of(air.reference));
         Ok(Vehicle {
             name: own.name,
             rotors,
@@ -171,7 +135,7 @@ impl Vehicle {
             mass_kg,
             battery,
             capacity_ah: arguments.capacity,
-            altitude_m: thin.or(bench_m).unwrap_or(HOME_M),
+            altitude_m: thin_m.or(bench_m).unwrap_or(HOME_M),
             hover_throttle,
         })
     }
@@ -185,6 +149,49 @@ impl Vehicle {
 fn read(path: &Path) -> Result<Airframe, String> {
     let text = std::fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))?;
     Airframe::read(&Source::new(path.display().to_string(), text)).map_err(|faults| faults.to_string())
+}
+
+/// The airframe with the pair of another file. The battery is the vehicle's, what a voltage does to the pair is the
+/// other file's.
+fn with_map(own: &Airframe, path: &Path) -> Result<Airframe, String> {
+    let other = read(path)?;
+    if own.is_unlike() || other.is_unlike() {
+        return Err(format!(
+            "--map {}: with several [[pair]] the map that is flown cannot be another file's",
+            path.display()
+        ));
+    }
+    let mut flown = own.clone();
+    flown.pair = other.pair;
+    flown.throttle = other.throttle;
+    flown.voltage = other.voltage;
+    flown.air = other.air;
+    Ok(flown)
+}
+
+/// The rotor with the lag of the flag, if there is one; one that the plant's steps can follow.
+fn with_lag(rotor: Flywheel, lag_s: Option<f64>) -> Result<Flywheel, String> {
+    let rotor = lag_s.map_or(rotor, |lag_s| rotor.with_lag(lag_s));
+    let (lag_s, [least, most]) = (rotor.lag_s(), LAGS_S);
+    if (least..=most).contains(&lag_s) {
+        return Ok(rotor);
+    }
+    Err(format!(
+        "rotors with a lag of {lag_s:.4} s, beyond {least} to {most} s: give another --rotor-inertia or --rotor-lag"
+    ))
+}
+
+/// The battery of the flags without resistance, each rotor's current at full throttle 1 A.
+fn unloaded(own: &Airframe, arguments: &Arguments) -> Battery {
+    let reference_v = own.voltage.as_ref().map(|voltage| voltage.reference);
+    let full_v = arguments.volts.or(reference_v).unwrap_or(ANY_VOLTAGE_V);
+    let fall_v = FALL_OVER_CAPACITY * full_v;
+    Battery {
+        full_v,
+        slope_v_per_ah: arguments.capacity.map_or(0.0, |capacity| fall_v / capacity),
+        resistance_ohm: 0.0,
+        full_throttle_a: 1.0,
+    }
 }
 
 /// Moments of inertia with [`MASS_AT_UNITS`] of the mass as points at the units.
