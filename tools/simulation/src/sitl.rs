@@ -2,8 +2,8 @@
 //!
 //! [`vehicle`] makes the plant of an airframe file, [`world`] has it on the ground or in the air,
 //! [`sensors`] measures it. [`px4`], [`ardupilot`] and [`betaflight`] speak the interfaces
-//! that the stacks have for outside simulators; [`pilot`] flies a [`plan`] by MAVLink, [`sticks`] by sticks; [`record`]
-//! holds the truth, [`score`] makes the table of it.
+//! that the stacks have for outside simulators, a folder each; [`pilot`] flies a [`plan`] by MAVLink, [`betaflight::sticks`] by
+//! sticks; [`record`] holds the truth, [`score`] makes the table of it.
 
 pub mod ardupilot;
 pub mod arguments;
@@ -18,34 +18,16 @@ pub mod px4;
 pub mod record;
 pub mod score;
 pub mod sensors;
-pub mod sticks;
 pub mod vehicle;
 pub mod world;
 
 use std::fs::File;
-use std::net::SocketAddr;
 
 use self::arguments::Arguments;
 use self::flight::{End, Flight};
-use self::link::Link;
-use self::pilot::{Pilot, Stack, Station};
 use self::score::Score;
 use self::sensors::Sensors;
-use self::sticks::Sticks;
 use self::vehicle::Vehicle;
-
-/// PX4's port of its MAVLink for an offboard computer, instance 0.
-const PX4_LINK: u16 = 14540;
-
-/// ArduPilot's first serial port, instance 0.
-const ARDUPILOT_LINK: u16 = 5760;
-
-/// Says where a stack is waited for.
-fn say(stack: &str, address: std::io::Result<SocketAddr>) {
-    if let Ok(address) = address {
-        eprintln!("waiting for {stack} port {}", address.port());
-    }
-}
 
 /// The file of `--output`, made before the flight, so that nothing flown is lost, and after
 /// the ports are had, so that an earlier flight is not lost to a busy one.
@@ -84,48 +66,28 @@ pub fn run(arguments: &Arguments) -> Result<(), String> {
         vehicle.name, vehicle.rotors, vehicle.mass_kg, vehicle.hover_throttle
     );
     let mut sensors = Sensors::new(arguments.noise, arguments.seed);
-    let output;
-    let (flight, end) = if arguments.px4 {
-        let link = Link::udp(arguments.link.unwrap_or(PX4_LINK))?;
-        let listener = px4::listen(arguments.port.unwrap_or(px4::PORT))?;
-        output = file(arguments)?;
-        say("PX4 on TCP", listener.local_addr());
-        // Without a manoeuvre, too: PX4 has its battery by this link.
-        let pilot = Station::new(Stack::Px4, link, arguments);
-        let mut flight = Flight::new(vehicle, Some(Box::new(pilot)), arguments);
-        let end = px4::serve(&listener, &mut flight, &mut sensors);
-        (flight, end)
+    let port = if arguments.px4 {
+        px4::open(arguments)?
     } else if arguments.betaflight {
-        if arguments.speed != 1.0 {
-            return Err("--speed: Betaflight's time is that of the wall clock".to_owned());
-        }
-        let port = arguments.port.unwrap_or(betaflight::PORT);
-        let socket = betaflight::listen(port)?;
-        output = file(arguments)?;
-        say("Betaflight on UDP", socket.local_addr());
-        let sticks = Sticks::new(vehicle.hover_throttle, arguments);
-        let pilot = arguments.fly.map(|_| Box::new(sticks) as Box<dyn Pilot>);
-        let mut flight = Flight::new(vehicle, pilot, arguments);
-        let end = betaflight::serve(&socket, port, &mut flight, &mut sensors, arguments.pwm_range);
-        (flight, end)
+        betaflight::open(arguments, vehicle.hover_throttle)?
     } else {
-        let socket = ardupilot::listen(arguments.port.unwrap_or(ardupilot::PORT))?;
-        output = file(arguments)?;
-        say("ArduPilot on UDP", socket.local_addr());
-        let link = Link::tcp(arguments.link.unwrap_or(ARDUPILOT_LINK));
-        let pilot = Station::new(Stack::Ardupilot, link, arguments);
-        let pilot = arguments.fly.map(|_| Box::new(pilot) as Box<dyn Pilot>);
-        let mut flight = Flight::new(vehicle, pilot, arguments);
-        let end = ardupilot::serve(&socket, &mut flight, &mut sensors, arguments.pwm_range);
-        (flight, end)
+        ardupilot::open(arguments)?
     };
+    let output = file(arguments)?;
+    if let Ok(address) = port.address {
+        eprintln!("waiting for {} port {}", port.name, address.port());
+    }
+    // PX4 has its battery by the pilot's link, without a manoeuvre, too.
+    let is_flown = arguments.px4 || arguments.fly.is_some();
+    let mut flight = Flight::new(vehicle, is_flown.then_some(port.pilot), arguments);
+    let end = (port.serve)(&mut flight, &mut sensors);
     if let (Some(path), Some(file)) = (&arguments.output, output) {
         let written = flight.record.write(file);
         written.map_err(|error| format!("{}: {error}", path.display()))?;
         eprintln!("wrote {}", path.display());
     }
     print!("{}", Score::new(&flight));
-    for (what, count) in &flight.record.counts {
+    for (what, count) in flight.record.counts.iter().filter(|(_, count)| **count > 0) {
         println!("{what}: {count}");
     }
     match end? {

@@ -1,11 +1,13 @@
 //! A flight: the world, who flies it, and its record.
 
+use std::net::SocketAddr;
 use std::time::{Duration, Instant};
 
 use super::arguments::{Arguments, Failure};
 use super::pilot::Pilot;
 use super::plan::{FIRST_S, Manoeuvre};
 use super::record::Record;
+use super::sensors::Sensors;
 use super::vehicle::{Throttles, Vehicle};
 use super::world::World;
 
@@ -16,6 +18,21 @@ pub enum End {
     Done,
     /// On the ground, at that time, s.
     Crashed(f64),
+}
+
+/// Serves a stack until its flight ends, or says why it cannot go on: a client that vanishes, a pilot who gives up.
+pub type Serve = Box<dyn FnOnce(&mut Flight, &mut Sensors) -> Result<End, String>>;
+
+/// A port on which a stack is waited for.
+pub struct Port {
+    /// The stack and the kind of port.
+    pub name: &'static str,
+    /// Where it is.
+    pub address: std::io::Result<SocketAddr>,
+    /// Who flies a manoeuvre.
+    pub pilot: Box<dyn Pilot>,
+    /// What is done once it is there.
+    pub serve: Serve,
 }
 
 /// A flight under way, the same for all stacks.

@@ -1,15 +1,14 @@
 //! Messages of the pilot's link.
 
 use mavlink::dialects::common::{
-    AttitudeTargetTypemask, BATTERY_STATUS_DATA, HEARTBEAT_DATA, MavAutopilot, MavBatteryFunction,
-    MavBatteryType, MavFrame, MavMessage, MavModeFlag, MavState, MavType, PositionTargetTypemask,
-    SET_ATTITUDE_TARGET_DATA, SET_POSITION_TARGET_LOCAL_NED_DATA, STATUSTEXT_DATA,
+    AttitudeTargetTypemask, HEARTBEAT_DATA, MavAutopilot, MavFrame, MavMessage, MavModeFlag, MavState,
+    MavType, PositionTargetTypemask, SET_ATTITUDE_TARGET_DATA, SET_POSITION_TARGET_LOCAL_NED_DATA,
+    STATUSTEXT_DATA,
 };
 
 use nalgebra::UnitQuaternion;
 
 use super::plan::Target;
-use super::world::World;
 
 /// A text that comes in pieces.
 #[derive(Clone, Debug, Default)]
@@ -88,36 +87,6 @@ pub fn attitude(target: Target, thrust: f32, [system, component]: [u8; 2], time_
     })
 }
 
-/// Number of a battery's component.
-pub const BATTERY: u8 = 180;
-
-/// Cells of a pack by its voltage, at most as many as the message holds.
-fn cells(volts: f64) -> usize {
-    (volts / 4.25).ceil().clamp(1.0, 10.0) as usize
-}
-
-/// The battery's state.
-pub fn battery(world: &World) -> MavMessage {
-    let (volts, charge_ah) = (world.voltage_v(), world.state.charge_ah);
-    let cells = cells(world.vehicle.battery.full_v);
-    let mut voltages = [u16::MAX; 10];
-    voltages[..cells].fill((1e3 * volts / cells as f64).round() as u16);
-    let left = |capacity_ah: f64| (1.0 - charge_ah / capacity_ah).max(0.0);
-    let left = world.vehicle.capacity_ah.map_or(1.0, left);
-    MavMessage::BATTERY_STATUS(BATTERY_STATUS_DATA {
-        current_consumed: (1e3 * charge_ah) as i32,
-        energy_consumed: -1,
-        temperature: 2500,
-        voltages,
-        current_battery: (100.0 * world.current_a()) as i16,
-        id: 0,
-        battery_function: MavBatteryFunction::MAV_BATTERY_FUNCTION_ALL,
-        mavtype: MavBatteryType::MAV_BATTERY_TYPE_LIPO,
-        battery_remaining: (100.0 * left) as i8,
-        ..BATTERY_STATUS_DATA::DEFAULT
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use mavlink::dialects::common::MavSeverity;
@@ -144,13 +113,5 @@ mod tests {
             texts.join(&piece(0, 0, &long[..50])).as_deref(),
             Some(long[..50].trim())
         );
-    }
-
-    #[test]
-    fn a_pack_has_as_many_cells_as_its_voltage_tells() {
-        let packs = [(4.2, 1), (14.8, 4), (16.8, 4), (21.87, 6), (25.2, 6), (50.4, 10)];
-        for (volts, count) in packs {
-            assert_eq!(cells(volts), count, "{volts} V");
-        }
     }
 }

@@ -9,8 +9,9 @@ use mavlink::dialects::common::{
 
 use super::arguments::Arguments;
 use super::link::Link;
-use super::messages::{BATTERY, Texts, attitude, battery, heartbeat, position};
+use super::messages::{Texts, attitude, heartbeat, position};
 use super::plan::{Manoeuvre, Plan, Target};
+use super::px4::battery::{BATTERY, battery};
 use super::world::World;
 
 /// The flight stack.
@@ -151,7 +152,6 @@ pub struct Station {
     stack: Stack,
     link: Link,
     plan: Option<Plan>,
-    height_m: f64,
     phase: Phase,
     /// System and component of the stack, and since when they are known, s.
     peer: Option<([u8; 2], f64)>,
@@ -184,7 +184,6 @@ impl Station {
             stack,
             link,
             plan: arguments.fly.map(Manoeuvre::plan),
-            height_m: HEIGHT_M,
             phase: Phase::Arming,
             peer: None,
             armed: false,
@@ -251,13 +250,12 @@ impl Station {
                 }
             }
             Phase::Climbing(still_since_s) => {
-                self.phase = climbed(still_since_s, 0.5 * self.height_m, world);
+                self.phase = climbed(still_since_s, 0.5 * HEIGHT_M, world);
                 if world.on_ground && is_due(&mut self.command_s, time_s, COMMAND_S) {
                     match self.stack {
                         _ if !self.armed => self.phase = Phase::Arming,
                         Stack::Ardupilot => {
-                            let height = self.height_m as f32;
-                            let parameters = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, height];
+                            let parameters = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, HEIGHT_M as f32];
                             self.command(peer, MavCmd::MAV_CMD_NAV_TAKEOFF, parameters);
                         }
                         Stack::Px4 => {}
@@ -284,7 +282,7 @@ impl Station {
                 Stack::Ardupilot => 0.5,
             };
             self.link.send(&if target.roll_deg == 0.0 && !target.is_climb {
-                position(target, self.height_m, peer, time_s)
+                position(target, HEIGHT_M, peer, time_s)
             } else {
                 attitude(target, thrust, peer, time_s)
             });

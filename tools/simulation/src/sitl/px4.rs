@@ -4,24 +4,25 @@
 //! `HIL_ACTUATOR_CONTROLS` once all of its modules have run. The first frames go without an answer:
 //! PX4 gives none before its modules are up.
 
+pub mod battery;
+pub mod packets;
+
 use std::io::{Read, Write};
-use std::iter::repeat;
 use std::net::{Ipv4Addr, TcpListener, TcpStream};
 use std::time::{Duration, Instant};
 
-use mavlink::dialects::common::{
-    HIL_ACTUATOR_CONTROLS_DATA, HIL_GPS_DATA, HIL_SENSOR_DATA, HIL_STATE_QUATERNION_DATA,
-    HilSensorUpdatedFlags, MavMessage, MavModeFlag,
-};
-use nalgebra::Vector3;
+use mavlink::dialects::common::MavMessage;
 
-use super::flight::{End, Flight};
+use self::packets::{fix, is_armed, measured, throttles, truth};
+use super::arguments::Arguments;
+use super::flight::{End, Flight, Port};
 use super::frames::{Frames, frame};
-use super::link::is_silence;
+use super::link::{Link, is_silence};
 use super::messages::heartbeat;
-use super::sensors::{Sensors, place};
-use super::vehicle::{MOST_ROTORS, Throttles};
-use super::world::World;
+use super::pilot::{Stack, Station};
+use super::record::Record;
+use super::sensors::Sensors;
+use super::vehicle::Throttles;
 
 /// Time between samples, microseconds: PX4's start scripts count on 250 per second, and with more it
 /// does not answer each.
@@ -37,25 +38,28 @@ const PATIENCE: Duration = Duration::from_secs(2);
 const DISARMED: Duration = Duration::from_millis(100);
 const PERIOD: Duration = Duration::from_micros(PERIOD_US);
 
-/// Bits of the fields of `HIL_SENSOR`: of acceleration and rates; of field, pressures, altitude and
-/// temperature. The differential pressure, 0, is that of a sensor whose temperature PX4 takes for
-/// the air's: it would take 15 degrees Celsius.
-const INERTIAL_FIELDS: u32 = 0b11_1111;
-const SLOW_FIELDS: u32 = 0b1_1111_1100_0000;
-
 /// System and component of the simulator.
 const SIMULATOR: [u8; 2] = [1, 51];
 
-/// PX4's port of a simulator for instance 0.
-pub const PORT: u16 = 4560;
+/// PX4's port of a simulator, and of its MAVLink for an offboard computer; instance 0.
+const PORT: u16 = 4560;
+const LINK: u16 = 14540;
 
-/// A port that PX4 may connect to.
+/// The port that PX4 connects to, and its pilot.
 ///
 /// # Errors
 /// A port that is taken.
-pub fn listen(port: u16) -> Result<TcpListener, String> {
-    TcpListener::bind((Ipv4Addr::LOCALHOST, port)).map_err(|error| {
+pub fn open(arguments: &Arguments) -> Result<Port, String> {
+    let link = Link::udp(arguments.link.unwrap_or(LINK))?;
+    let port = arguments.port.unwrap_or(PORT);
+    let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port)).map_err(|error| {
         format!("TCP port {port} for PX4: {error}; end what uses it, or give --port another one and start PX4 as that instance")
+    })?;
+    Ok(Port {
+        name: "PX4 on TCP",
+        address: listener.local_addr(),
+        pilot: Box::new(Station::new(Stack::Px4, link, arguments)),
+        serve: Box::new(move |flight, sensors| serve(&listener, flight, sensors)),
     })
 }
 
@@ -68,14 +72,10 @@ struct Px4 {
     /// Whether PX4 has ever answered.
     answers: bool,
     armed: bool,
-    unanswered: u64,
 }
 
 /// Serves PX4 until the flight ends.
-///
-/// # Errors
-/// A client that vanishes, a pilot who gives up.
-pub fn serve(listener: &TcpListener, flight: &mut Flight, sensors: &mut Sensors) -> Result<End, String> {
+fn serve(listener: &TcpListener, flight: &mut Flight, sensors: &mut Sensors) -> Result<End, String> {
     let (stream, _) = listener
         .accept()
         .map_err(|error| format!("no connection from PX4: {error}"))?;
@@ -89,12 +89,9 @@ pub fn serve(listener: &TcpListener, flight: &mut Flight, sensors: &mut Sensors)
         throttles: Throttles::zeros(),
         answers: false,
         armed: false,
-        unanswered: 0,
     };
     let end = px4.fly(flight, sensors);
-    let record = &mut flight.record;
-    record.note("armed steps without an answer", px4.unanswered);
-    record.note("malformed pieces", px4.frames.malformed);
+    flight.record.note("malformed pieces", px4.frames.malformed);
     end
 }
 
@@ -111,7 +108,7 @@ impl Px4 {
             }
             self.send(&truth(world))?;
             self.send(&measured(world, sensors, sample.is_multiple_of(SLOW)))?;
-            self.answer(world.time_us)?;
+            self.answer(world.time_us, &mut flight.record)?;
         }
         Ok(End::Done)
     }
@@ -123,7 +120,7 @@ impl Px4 {
 
     /// Waits for the outputs that follow the sample of `time_us`. Before PX4 answers at all, it is
     /// given real time to start.
-    fn answer(&mut self, time_us: u64) -> Result<(), String> {
+    fn answer(&mut self, time_us: u64, record: &mut Record) -> Result<(), String> {
         let patience = match (self.answers, self.armed) {
             (false, _) => PERIOD,
             (true, false) => DISARMED,
@@ -144,11 +141,8 @@ impl Px4 {
             }
             let left = deadline.saturating_duration_since(Instant::now());
             if left.is_zero() {
-                if self.armed {
-                    self.unanswered += 1;
-                    if self.unanswered == 1 {
-                        eprintln!("PX4 has not answered within {} s: going on", PATIENCE.as_secs());
-                    }
+                if self.armed && record.note("armed steps without an answer", 1) == 1 {
+                    eprintln!("PX4 has not answered within {} s: going on", PATIENCE.as_secs());
                 }
                 return Ok(());
             }
@@ -165,108 +159,4 @@ impl Px4 {
 
 fn vanished(error: std::io::Error) -> String {
     format!("PX4 has gone: {error}")
-}
-
-fn is_armed(controls: &HIL_ACTUATOR_CONTROLS_DATA) -> bool {
-    controls.mode.contains(MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED)
-}
-
-/// PX4's outputs, all at rest unless it is armed.
-fn throttles(controls: &HIL_ACTUATOR_CONTROLS_DATA) -> Throttles {
-    let outputs = controls.controls.iter().filter(|_| is_armed(controls));
-    Throttles::from_iterator(
-        outputs
-            .map(|output| f64::from(*output))
-            .chain(repeat(0.0))
-            .take(MOST_ROTORS),
-    )
-}
-
-fn floats(vector: &Vector3<f64>) -> [f32; 3] {
-    vector.map(|value| value as f32).into()
-}
-
-fn measured(world: &World, sensors: &mut Sensors, slow: bool) -> MavMessage {
-    let [[xacc, yacc, zacc], [xgyro, ygyro, zgyro]] = sensors.inertial(world).map(|vector| floats(&vector));
-    let slow = if slow { SLOW_FIELDS } else { 0 };
-    let fields_updated = HilSensorUpdatedFlags::from_bits_truncate(INERTIAL_FIELDS | slow);
-    let [xmag, ymag, zmag] = floats(&sensors.field(world));
-    let [abs_pressure, pressure_alt, temperature] = sensors.air(world).map(|value| value as f32);
-    MavMessage::HIL_SENSOR(HIL_SENSOR_DATA {
-        time_usec: world.time_us,
-        xacc,
-        yacc,
-        zacc,
-        xgyro,
-        ygyro,
-        zgyro,
-        xmag,
-        ymag,
-        zmag,
-        abs_pressure,
-        pressure_alt,
-        temperature,
-        fields_updated,
-        ..HIL_SENSOR_DATA::DEFAULT
-    })
-}
-
-/// Degrees in units of 1e-7, and millimetres.
-fn scaled([latitude, longitude, altitude]: [f64; 3]) -> [i32; 3] {
-    [latitude * 1e7, longitude * 1e7, altitude * 1e3].map(|value| value.round() as i32)
-}
-
-fn centimetres(velocity: &Vector3<f64>) -> [i16; 3] {
-    velocity.map(|speed| (100.0 * speed).round() as i16).into()
-}
-
-fn fix(world: &World, sensors: &mut Sensors) -> MavMessage {
-    let (place, velocity) = sensors.fix(world);
-    let [lat, lon, alt] = scaled(place);
-    let [vn, ve, vd] = centimetres(&velocity);
-    let course = libm::atan2(velocity.y, velocity.x).to_degrees();
-    MavMessage::HIL_GPS(HIL_GPS_DATA {
-        time_usec: world.time_us,
-        lat,
-        lon,
-        alt,
-        eph: 30,
-        epv: 40,
-        vel: (100.0 * velocity.norm()) as u16,
-        vn,
-        ve,
-        vd,
-        cog: (100.0 * course.rem_euclid(360.0)) as u16 % 36_000,
-        fix_type: 3,
-        satellites_visible: 10,
-        // Its yaw, 0, is not known.
-        ..HIL_GPS_DATA::DEFAULT
-    })
-}
-
-fn truth(world: &World) -> MavMessage {
-    let state = &world.state;
-    let q = state.attitude;
-    let [rollspeed, pitchspeed, yawspeed] = floats(&state.rate);
-    let [lat, lon, alt] = scaled(place(&state.position, world.vehicle.altitude_m));
-    let [vx, vy, vz] = centimetres(&state.velocity);
-    // In thousandths of the standard gravity.
-    let [xacc, yacc, zacc] = floats(&(world.specific_force * (1e3 / 9.806_65))).map(|a| a as i16);
-    MavMessage::HIL_STATE_QUATERNION(HIL_STATE_QUATERNION_DATA {
-        time_usec: world.time_us,
-        attitude_quaternion: [q.w as f32, q.i as f32, q.j as f32, q.k as f32],
-        rollspeed,
-        pitchspeed,
-        yawspeed,
-        lat,
-        lon,
-        alt,
-        vx,
-        vy,
-        vz,
-        xacc,
-        yacc,
-        zacc,
-        ..HIL_STATE_QUATERNION_DATA::DEFAULT
-    })
 }

@@ -1,5 +1,6 @@
 //! The true flight, sample by sample.
 
+use std::collections::BTreeMap;
 use std::io::Write;
 
 use nalgebra::Vector3;
@@ -48,8 +49,8 @@ pub struct Sample {
 pub struct Record {
     /// In the order of time.
     pub samples: Vec<Sample>,
-    /// Counts that deserve a line.
-    pub counts: Vec<(&'static str, u64)>,
+    /// Counts; those above 0 deserve a line.
+    pub counts: BTreeMap<&'static str, u64>,
     next_us: u64,
 }
 
@@ -77,11 +78,11 @@ impl Record {
         });
     }
 
-    /// Notes a count, if there is anything to count.
-    pub fn note(&mut self, what: &'static str, count: u64) {
-        if count > 0 {
-            self.counts.push((what, count));
-        }
+    /// Counts on; how many there are.
+    pub fn note(&mut self, what: &'static str, more: u64) -> u64 {
+        let count = self.counts.entry(what).or_default();
+        *count += more;
+        *count
     }
 
     /// Writes every fifth sample, 20 ms from row to row; what is not known is empty.

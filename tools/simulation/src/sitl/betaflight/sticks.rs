@@ -3,10 +3,10 @@
 
 use nalgebra::Vector3;
 
-use super::arguments::Arguments;
-use super::pilot::{Channels, Phase, Pilot, climbed};
-use super::plan::{Manoeuvre, Plan, Target};
-use super::world::World;
+use crate::sitl::arguments::Arguments;
+use crate::sitl::pilot::{Channels, Phase, Pilot, climbed};
+use crate::sitl::plan::{Manoeuvre, Plan, Target};
+use crate::sitl::world::World;
 use crate::state::wrapped;
 use crate::vehicle::GRAVITY_M_S2;
 
