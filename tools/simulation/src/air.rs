@@ -45,7 +45,8 @@ pub enum Air {
 pub struct Room {
     air: Air,
     source: Pcg64Mcg,
-    mismatch: SVector<f64, ROTORS>,
+    /// Relative deviation of each rotor's effective throttle, 1 % standard deviation.
+    pub mismatch: SVector<f64, ROTORS>,
     disturbance: Disturbance<ROTORS>,
 }
 
@@ -59,19 +60,6 @@ impl Room {
             source,
             mismatch,
             disturbance: Disturbance::default(),
-        }
-    }
-
-    /// Relative deviation of each rotor's effective throttle, 1 % standard deviation.
-    pub fn mismatch(&self) -> SVector<f64, ROTORS> {
-        self.mismatch
-    }
-
-    /// Equal rotors in still air.
-    pub fn nominal() -> Self {
-        Room {
-            mismatch: SVector::zeros(),
-            ..Room::new(Air::Still, 0)
         }
     }
 

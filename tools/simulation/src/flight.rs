@@ -74,7 +74,7 @@ impl ClosedLoop {
     pub fn new(airframe: &Airframe, tilt: Tilt, room: Room) -> Self {
         let state = State::level(reference(-SETTLING_S).position, START_SPEED);
         ClosedLoop {
-            plant: Plant::new(airframe, BODY, battery::PAPER, room.mismatch()),
+            plant: Plant::new(airframe, BODY, battery::PAPER, room.mismatch),
             controller: Controller::new(tilt),
             room,
             positions: VecDeque::from(vec![state.position; DELAY]),

@@ -47,16 +47,17 @@ pub const PAPER_CONVENTIONAL: TrackingError = TrackingError {
 impl Flight {
     /// The errors of this flight.
     pub fn tracking_error(&self) -> TrackingError {
-        let (mut mse, mut mae, mut max) = (Vector3::zeros(), Vector3::zeros(), Vector3::zeros());
-        for axis in 0..3 {
+        let errors = [0, 1, 2].map(|axis| -> Vec<f64> {
             let counts = |sample: &&Sample| axis < 2 || HIGH_PHASE_S.contains(&sample.time_s);
-            let error = |sample: &Sample| (sample.reference.position - sample.position)[axis];
-            let errors: Vec<f64> = self.samples.iter().filter(counts).map(error).collect();
-            mse[axis] = mean(errors.iter().map(|e| e * e));
-            mae[axis] = mean(errors.iter().map(|e| e.abs()));
-            max[axis] = errors.iter().fold(0.0, |max: f64, e| max.max(e.abs()));
+            let error = |sample: &Sample| (sample.reference.position - sample.position)[axis].abs();
+            self.samples.iter().filter(counts).map(error).collect()
+        });
+        let over = |of: fn(&[f64]) -> f64| errors.each_ref().map(|errors| of(errors)).into();
+        TrackingError {
+            mse: over(|errors| mean(errors.iter().map(|e| e * e))),
+            mae: over(|errors| mean(errors.iter().copied())),
+            max: over(|errors| errors.iter().copied().fold(0.0, f64::max)),
         }
-        TrackingError { mse, mae, max }
     }
 
     /// Mean absolute yaw error over the manoeuvre, rad.

@@ -156,11 +156,10 @@ impl Flown<'_> {
         let square = |sample: &Sample| error(sample) * error(sample);
         let rms = self.mean(begin_s, begin_s + RMS_S, square)?.sqrt();
         let turn = to.yaw_deg - from.yaw_deg;
-        let (x, y) = (
-            |sample: &Sample| sample.position.x,
-            |sample: &Sample| sample.position.y,
-        );
-        let [north, east] = [over(&x)?, over(&y)?];
+        let [north, east] = [
+            over(&|sample| sample.position.x)?,
+            over(&|sample| sample.position.y)?,
+        ];
         let roll = over(&|sample| sample.euler.x)?;
         let aimed = from.yaw_deg.to_radians();
         let yaw = over(&|sample| wrapped(sample.euler.z - aimed))? + aimed;
@@ -187,16 +186,12 @@ impl Flown<'_> {
                 rise_s = time_s - begin_s;
             }
         }
-        let heights = if holds_height {
-            [largest(&error), rms]
-        } else {
-            [f64::NAN; 2]
-        };
+        let held = |value: f64| if holds_height { value } else { f64::NAN };
         Some([
             rise_s,
             100.0 * (furthest - 1.0).max(0.0),
-            heights[0],
-            heights[1],
+            held(largest(&error)),
+            held(rms),
             largest(&|sample| sample.thrust_n / weight_n),
             -largest(&|sample| -(sample.thrust_n / weight_n)),
             largest(&|sample| tilt_deg(sample, [0.0; 2])),
