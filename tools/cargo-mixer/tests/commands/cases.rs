@@ -11,7 +11,7 @@
 //! `$` begins a command of `sh`, `>` continues it: here-documents make files, `sed` changes them.
 //! What stands below is checked, and written by `MIXER_BLESS=1 cargo test -p cargo-mixer --test
 //! commands`; read the difference before committing it. A status of 0 is not said. A case begins in an
-//! empty folder with links to `airframes`, to the compiler's `bad` and `warned` files, to the `golden`
+//! empty folder with links to `airframes`, `examples`, to the compiler's `bad` and `warned` files, to the `golden`
 //! outputs and to `files` beside the cases. Times, the project's version and the case's folder are
 //! masked. No case may panic, nor send a control character to a terminal.
 
@@ -39,7 +39,7 @@ macro_rules! folders {
     };
 }
 
-folders! { check compare expand golden identify import library mix new params plan predict report usage wrench }
+folders! { check compare expand golden identify import library mix new params plan predict report review usage wrench }
 
 /// The names of what is in a folder, in order.
 fn names(folder: &Path) -> Vec<String> {
@@ -94,6 +94,7 @@ fn session(case: &str, place: &Path) -> String {
     fs::create_dir_all(place).unwrap();
     for (name, folder) in [
         ("airframes", "airframes"),
+        ("examples", "examples"),
         ("bad", "mixer-compiler/tests/diagnostics"),
         ("warned", "mixer-compiler/tests/warnings"),
         ("golden", "tests/golden"),

@@ -145,21 +145,23 @@ fn yaw(seen: &WarningInputs<'_>) -> Vec<String> {
 /// Voltage and density beyond the mixer's range, or unknown.
 fn conditions(seen: &WarningInputs<'_>) -> Vec<String> {
     let (airframe, review) = (&seen.compiled.airframe, seen.review);
-    let of = |name: &str, measured: &Option<Range>, law: &Option<Correction>| match (measured, law) {
+    let of = |name: &str, unit: &str, measured: &Option<Range>, law: &Option<Correction>| match (
+        measured, law,
+    ) {
         (Some(measured), Some(law)) if measured.outside > 0.0 => Some(format!(
-            "the flight had a {name} of {:.2} to {:.2}, beyond the file's {} to {}: outside the mixer holds the range's end",
+            "the flight had a {name} of {:.2} to {:.2}, beyond the file's {} to {} {unit}: outside the mixer holds the range's end",
             measured.least, measured.largest, law.range[0], law.range[1]
         )),
         (None, Some(law)) => Some(format!(
-            "no {name} was logged, or none that can be: the scale is that at {}, and its interval that of the whole range",
+            "no {name} was logged, or none that can be: the scale is that at {} {unit}, and its interval that of the whole range",
             law.reference
         )),
         _ => None,
     };
-    let voltage = of("voltage", &review.voltage, &airframe.voltage);
+    let voltage = of("voltage", "V", &review.voltage, &airframe.voltage);
     voltage
         .into_iter()
-        .chain(of("density", &review.density, &airframe.air))
+        .chain(of("density", "kg/m3", &review.density, &airframe.air))
         .collect()
 }
 

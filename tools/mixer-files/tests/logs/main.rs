@@ -4,6 +4,9 @@
 
 mod writers;
 
+use std::fs;
+use std::path::Path;
+
 use mixer_compiler::airframe::GRAVITY;
 use mixer_compiler::model::Physics;
 use mixer_compiler::{Compiled, Source};
@@ -203,6 +206,45 @@ fn logs() -> [Vec<u8>; 2] {
         px4_log(&compiled, &px4_frame(&compiled)),
         ardupilot_log(&compiled, &ardupilot_frame()),
     ]
+}
+
+/// The command line's transcripts of `review` have both logs, PX4's with fewer rows; `MIXER_BLESS=1` writes them.
+#[test]
+fn the_logs_of_the_transcripts_are_these() {
+    let compiled = compiled();
+    let thinned = vec![
+        Topic {
+            name: "sensor_combined",
+            fields: "float[3] accelerometer_m_s2;",
+            period_s: 0.04,
+            rows: &force,
+        },
+        Topic {
+            name: "vehicle_attitude",
+            fields: "float[4] q;",
+            period_s: 0.1,
+            rows: &|_| vec![0.8, 0.0, 0.0, 0.6],
+        },
+    ];
+    let px4 = px4_log_with(
+        &px4_frame(&compiled),
+        &|time_s| throttles(&compiled, time_s),
+        thinned,
+    );
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../cargo-mixer/tests/cases/files");
+    for (name, log) in [
+        ("x8.ulg", px4),
+        ("x8.bin", ardupilot_log(&compiled, &ardupilot_frame())),
+    ] {
+        let file = folder.join(name);
+        if std::env::var_os("MIXER_BLESS").is_some_and(|value| value == "1") {
+            fs::write(&file, &log).unwrap();
+        }
+        assert!(
+            fs::read(&file).unwrap() == log,
+            "{name}: MIXER_BLESS=1 writes it anew"
+        );
+    }
 }
 
 #[test]
