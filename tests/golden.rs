@@ -3,7 +3,7 @@
 
 use cargo_mixer::commands::golden::compare;
 use mixer_files::golden::outputs;
-use mixer_files::vectors::{self, Kind, Vector};
+use mixer_files::vectors::{self, Vector, VectorKind};
 use mixer_rt::{Conditions, Health, Wrench};
 use mixer_tests::physics::Physics;
 use mixer_tests::{airframes, golden};
@@ -102,8 +102,8 @@ fn golden_vectors_cover_what_they_should() {
             all += list.len();
             all_saturated += saturated;
             match kind {
-                Kind::ByHand => assert!((20..list.len()).contains(&saturated), "{name} {kind:?}"),
-                Kind::Attainable => {
+                VectorKind::ByHand => assert!((20..list.len()).contains(&saturated), "{name} {kind:?}"),
+                VectorKind::Attainable => {
                     assert_eq!(saturated, 0, "{name} {kind:?}");
                     let helped = list.iter().filter(|vector| needs_null_space(vector)).count();
                     println!("{name} {kind:?}: {helped} need the null space");
@@ -113,15 +113,17 @@ fn golden_vectors_cover_what_they_should() {
                 }
                 // Those outside are a third; of two steps inside, the lesser may be within the error of
                 // the sides.
-                Kind::Border => assert!(
+                VectorKind::Border => assert!(
                     (list.len() / 3..=2 * list.len() / 3).contains(&saturated),
                     "{name} {kind:?}: {saturated}"
                 ),
                 // A part of the random ones is attainable.
-                Kind::Saturated => assert!(5 * saturated >= 4 * list.len(), "{name} {kind:?}: {saturated}"),
+                VectorKind::Saturated => {
+                    assert!(5 * saturated >= 4 * list.len(), "{name} {kind:?}: {saturated}")
+                }
                 // Thrust of 40 % of the ceiling and roll, pitch and yaw of next to nothing are
                 // delivered.
-                Kind::Faint => assert!(saturated >= 18, "{name} {kind:?}: {saturated}"),
+                VectorKind::Faint => assert!(saturated >= 18, "{name} {kind:?}: {saturated}"),
             }
         }
         let share = f64::from(all_saturated as u32) / f64::from(all as u32);

@@ -35,31 +35,31 @@ pub use self::unit::Unit;
 pub use self::vehicle::{GRAVITY, Vehicle};
 use crate::diagnostic::source::Source;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
-use crate::spec::keys::{Kind, Shape, keys};
+use crate::spec::keys::{Shape, ValueKind, keys};
 use crate::spec::{self, Fields, Places, Spanned};
 
 keys! { FILE = "":
-    NAME "name" = "\"my-x8\"", Kind::Name,
+    NAME "name" = "\"my-x8\"", ValueKind::Name,
         "Name of the airframe; becomes the Rust module and type.".required();
-    DESCRIPTION "description" = "\"X8 with 15 inch propellers\"", Kind::Text,
+    DESCRIPTION "description" = "\"X8 with 15 inch propellers\"", ValueKind::Text,
         "Free text.";
-    THROTTLE "throttle" = "", Kind::Table(&throttle::TABLE),
+    THROTTLE "throttle" = "", ValueKind::Table(&throttle::TABLE),
         "The range of every rotor's throttle.".required();
-    PAIR "pair" = "", Kind::TableOrTables(&pair::TABLE),
+    PAIR "pair" = "", ValueKind::TableOrTables(&pair::TABLE),
         "Total thrust and torque of one unit at the reference voltage, from the bench; `[[pair]]` with a name each where units differ.".required();
-    VOLTAGE "voltage" = "", Kind::Table(&correction::VOLTAGE_TABLE),
+    VOLTAGE "voltage" = "", ValueKind::Table(&correction::VOLTAGE_TABLE),
         "How thrust and torque follow the battery's voltage; without it they do not.";
-    AIR "air" = "", Kind::Table(&correction::AIR_TABLE),
+    AIR "air" = "", ValueKind::Table(&correction::AIR_TABLE),
         "How thrust and torque follow the air's density; without it they do not.";
-    LAYOUT "layout" = "", Kind::Table(&layout::TABLE),
+    LAYOUT "layout" = "", ValueKind::Table(&layout::TABLE),
         "A regular frame, instead of [[unit]].";
-    UNIT "unit" = "", Kind::Tables(&unit::TABLE),
+    UNIT "unit" = "", ValueKind::Tables(&unit::TABLE),
         "One for each pair of rotors.";
-    INVERSE "inverse" = "", Kind::Table(&inverse::TABLE),
+    INVERSE "inverse" = "", ValueKind::Table(&inverse::TABLE),
         "How truly, and how, the pair's map is inverted.";
-    ALLOCATION "allocation" = "", Kind::Table(&allocation::TABLE),
+    ALLOCATION "allocation" = "", ValueKind::Table(&allocation::TABLE),
         "Which axes are served, and what gives way when not all can be had.";
-    VEHICLE "vehicle" = "", Kind::Table(&vehicle::TABLE),
+    VEHICLE "vehicle" = "", ValueKind::Table(&vehicle::TABLE),
         "The vehicle, for what `check` and the report say of hover.";
 }
 

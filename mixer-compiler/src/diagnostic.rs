@@ -2,7 +2,7 @@
 //! mend it.
 
 mod code;
-pub mod kind;
+pub mod content;
 pub mod source;
 mod wording;
 
@@ -14,7 +14,7 @@ use annotate_snippets::{AnnotationKind, Level, Origin, Renderer, Snippet};
 use serde::Serialize;
 
 pub use self::code::{Code, Severity};
-use self::kind::Kind;
+use self::content::Content;
 pub use self::source::utf16;
 use self::source::{BYTE_ORDER_MARK, Place, Source};
 pub(crate) use self::wording::{any_of, nearest, number, quoted};
@@ -40,10 +40,10 @@ pub struct Diagnostic {
 
 impl Diagnostic {
     /// The fault of a file of another kind, which has no place.
-    pub(crate) fn of_another_kind(kind: Kind) -> Self {
+    pub(crate) fn of_another_kind(kind: Content) -> Self {
         let what = kind.told();
         let (message, help) = match kind {
-            Kind::Pair => (
+            Content::Pair => (
                 format!("no airframe: this is {what}"),
                 "cargo mixer new --frame x8 --arm METRE --pair FILE -o AIRFRAME.toml makes one of it",
             ),
@@ -168,8 +168,8 @@ impl Source {
             valid..valid + char::REPLACEMENT_CHARACTER.len_utf8(),
             format!("the file is not UTF-8: byte 0x{byte:02x} at offset {valid}"),
         );
-        let fault = match kind::foreign(bytes.as_bytes()) {
-            Some(what) => Diagnostic::of_another_kind(Kind::Foreign(what)),
+        let fault = match content::foreign(bytes.as_bytes()) {
+            Some(what) => Diagnostic::of_another_kind(Content::Foreign(what)),
             None => fault.help("save the file as UTF-8"),
         };
         Err(Diagnostics::new(source, vec![fault]))

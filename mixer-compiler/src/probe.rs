@@ -148,7 +148,7 @@ struct At<'a> {
 }
 
 /// What the mixer answers to a wrench; wrenches are `[roll, pitch, yaw, thrust]`, N m and N.
-struct Answer<'a> {
+struct Delivered<'a> {
     at: &'a At<'a>,
     asked: [f64; 4],
     /// A throttle per channel.
@@ -161,7 +161,7 @@ struct Answer<'a> {
 }
 
 /// What a judge has against an answer, in words.
-type Judge = fn(&Answer<'_>) -> Option<String>;
+type Judge = fn(&Delivered<'_>) -> Option<String>;
 
 const JUDGES: [Judge; 5] = [
     judge_throttles,
@@ -218,7 +218,7 @@ impl<'a> At<'a> {
         ))
     }
 
-    fn answer(&self, asked: [f32; 4]) -> Result<Answer<'_>, String> {
+    fn answer(&self, asked: [f32; 4]) -> Result<Delivered<'_>, String> {
         let Compiled {
             airframe,
             pair: map,
@@ -230,7 +230,7 @@ impl<'a> At<'a> {
         let (throttle, achieved, saturation) = tables
             .mix_with_health(&Wrench::from_array(asked), conditions, self.health)
             .map_err(|error| error.to_string())?;
-        Ok(Answer {
+        Ok(Delivered {
             at: self,
             asked: asked.map(f64::from),
             given: Physics { airframe, map }.wrench(&throttle, self.factors, self.health),
@@ -256,7 +256,7 @@ impl<'a> At<'a> {
     }
 }
 
-impl Answer<'_> {
+impl Delivered<'_> {
     /// The first served axis that is at fault.
     fn find(&self, is_at_fault: impl Fn(Axis, usize) -> bool) -> Option<Axis> {
         let mut served = Axis::ALL.into_iter().filter(|&axis| self.at.serves(axis));
@@ -269,7 +269,7 @@ impl Answer<'_> {
 }
 
 /// Throttles are within the range, those of rotors that are out zero.
-fn judge_throttles(answer: &Answer<'_>) -> Option<String> {
+fn judge_throttles(answer: &Delivered<'_>) -> Option<String> {
     let range = &answer.at.compiled.tables.throttle;
     let is_allowed = |channel: usize, throttle: f32| match answer.at.health.has_failed(channel as u8) {
         true => throttle == 0.0,
@@ -281,7 +281,7 @@ fn judge_throttles(answer: &Answer<'_>) -> Option<String> {
 }
 
 /// What is reported is given.
-fn judge_report(answer: &Answer<'_>) -> Option<String> {
+fn judge_report(answer: &Delivered<'_>) -> Option<String> {
     let (achieved, given) = (&answer.achieved, &answer.given);
     answer.find(|axis, k| {
         let is_true = (given[k] - achieved[k]).abs() <= answer.at.tolerance(axis);
@@ -291,7 +291,7 @@ fn judge_report(answer: &Answer<'_>) -> Option<String> {
 }
 
 /// What is not flagged is delivered.
-fn judge_flags(answer: &Answer<'_>) -> Option<String> {
+fn judge_flags(answer: &Delivered<'_>) -> Option<String> {
     let axis = answer.find(|axis, k| {
         let missed = (answer.given[k] - answer.asked[k]).abs();
         !answer.saturation.is_flagged(axis) && missed > 2.0 * answer.at.tolerance(axis)
@@ -300,7 +300,7 @@ fn judge_flags(answer: &Answer<'_>) -> Option<String> {
 }
 
 /// A wrench is delivered where the throttles of least norm are well inside their range.
-fn judge_service(answer: &Answer<'_>) -> Option<String> {
+fn judge_service(answer: &Delivered<'_>) -> Option<String> {
     let (at, tables) = (answer.at, &answer.at.compiled.tables);
     if !at.health.is_good() || answer.is_delivered() {
         return None;
@@ -321,8 +321,8 @@ fn judge_service(answer: &Answer<'_>) -> Option<String> {
 ///
 /// With one rotor out torques are sound where level flight at the thrust asked is attainable; the
 /// caller goes on from there. With two they are all but always, which is no proof of a fault.
-fn judge_soundness(answer: &Answer<'_>) -> Option<String> {
-    let Answer { at, asked, given, .. } = answer;
+fn judge_soundness(answer: &Delivered<'_>) -> Option<String> {
+    let Delivered { at, asked, given, .. } = answer;
     let is_whole = at.health.is_good();
     let is_promised = is_whole || answer.is_delivered() || asked[..3] != [0.0; 3];
     if !is_promised || at.failed().count() > 1 {

@@ -46,7 +46,7 @@ impl Unit {
 pub struct Tolerance {
     /// Of one unit's efforts `[f, Q]` at the reference voltage, N and N m.
     pub efforts: [f32; 2],
-    /// Of the wrench `[roll, pitch, yaw, thrust]`: what those errors add up to, with rounding.
+    /// Of the wrench `[roll, pitch, yaw, thrust]`, N m and N: what those errors add up to, with rounding.
     pub wrench: [f32; 4],
 }
 

@@ -14,7 +14,7 @@ use microlp::Error;
 use mixer_compiler::Source;
 use mixer_compiler::diagnostic::Severity;
 use mixer_rt::Health;
-use mixer_setpoints::{Kind, Random, Requests};
+use mixer_setpoints::{Random, RequestKind, Requests};
 
 use crate::frames::zoo::{Class, REFUSALS, Specimen, Zoo};
 use crate::request::{Frame, Request};
@@ -112,7 +112,7 @@ impl Soak {
             "M M+ is not the identity".into()
         });
         let view = frame.compiled.tables.view();
-        for setpoint in Requests::new(&view, Kind::Saturated, random.bits()).take(REQUESTS) {
+        for setpoint in Requests::new(&view, RequestKind::Saturated, random.bits()).take(REQUESTS) {
             visit.sound(
                 frame,
                 &Request {

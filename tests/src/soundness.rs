@@ -17,7 +17,7 @@ pub const SLACK: f64 = 3e-3;
 
 /// What is wrong with an answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum FaultKind {
     /// A throttle outside its range, or not 0 of a rotor that is out.
     Throttle,
     /// The achieved wrench is not what the throttles give.
@@ -36,7 +36,7 @@ pub enum Kind {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fault {
     /// What is wrong.
-    pub kind: Kind,
+    pub kind: FaultKind,
     /// By how much: as a share of the axis' authority, of a throttle as it is.
     pub size: f64,
     /// In words.
@@ -81,7 +81,7 @@ fn throttles(frame: &Frame, request: &Request, answer: &Answer) -> Option<Fault>
     let range = frame.compiled.airframe.throttle;
     let count = 2 * frame.physics.units();
     let fault = |size: f64, said: String| Fault {
-        kind: Kind::Throttle,
+        kind: FaultKind::Throttle,
         size,
         said,
     };
@@ -121,7 +121,7 @@ fn truth(frame: &Frame, request: &Request, answer: &Answer) -> Option<Fault> {
         // What is not a number is not true.
         let is_true = size <= ROUNDING + lost / frame.size(index);
         (!is_true).then(|| Fault {
-            kind: Kind::Truth,
+            kind: FaultKind::Truth,
             size,
             said: format!("{}: {said} said, {given} given by the throttles", axis.name()),
         })
@@ -144,7 +144,7 @@ fn flags(frame: &Frame, request: &Request, answer: &Answer) -> Option<Fault> {
                 let wrong = excess.abs() > rounding && flagged != (excess > 0.0);
                 let name = axis.name();
                 wrong.then(|| Fault {
-                    kind: Kind::Flag,
+                    kind: FaultKind::Flag,
                     size: missing.abs() / frame.size(index),
                     said: format!("{name} {direction:?}: {missing} missing, flag {flagged}"),
                 })
@@ -162,7 +162,7 @@ fn flags(frame: &Frame, request: &Request, answer: &Answer) -> Option<Fault> {
     ];
     axes.or_else(|| {
         (given != [voltage, density]).then(|| Fault {
-            kind: Kind::Flag,
+            kind: FaultKind::Flag,
             size: 0.0,
             said: format!("{request:?}: voltage and density clamped {given:?}"),
         })
@@ -193,7 +193,7 @@ fn overstepping(frame: &Frame, request: &Request, answer: &Answer) -> Result<Vec
         let beyond = (got * asked.signum() - asked.abs()).max(-got * asked.signum());
         if beyond > slack[index] {
             faults.push(Fault {
-                kind: Kind::Overstepped,
+                kind: FaultKind::Overstepped,
                 size: beyond / frame.size(index),
                 said: format!("{}: {asked} asked, {got} given", axis.name()),
             });
@@ -205,7 +205,7 @@ fn overstepping(frame: &Frame, request: &Request, answer: &Answer) -> Result<Vec
         let turned = (answer.achieved[0] * asked[1] - answer.achieved[1] * asked[0]).abs() / torque;
         if torque > 0.0 && turned > length([slack[0], slack[1]]) {
             faults.push(Fault {
-                kind: Kind::Turned,
+                kind: FaultKind::Turned,
                 size: turned / length([frame.size(0), frame.size(1)]),
                 said: format!("(roll, pitch) turned by {turned} N m"),
             });
@@ -239,7 +239,7 @@ fn overstepping(frame: &Frame, request: &Request, answer: &Answer) -> Result<Vec
     }
     if raised && is_above(floor) {
         faults.push(Fault {
-            kind: Kind::Raised,
+            kind: FaultKind::Raised,
             size: (given - floor.max(asked[3])) / frame.size(3),
             said: format!("thrust: {} asked, {given} given, {floor} is the least", asked[3]),
         });

@@ -4,7 +4,7 @@ pub use mixer_rt::{Axis, tables::Airmode};
 
 use super::limits::LARGEST_EFFORT;
 use crate::diagnostic::{Code, Diagnostic, number};
-use crate::spec::keys::{Kind, Range, keys};
+use crate::spec::keys::{Range, ValueKind, keys};
 use crate::spec::{Fields, Spanned};
 
 /// Largest torque per thrust of a pair, N m per N: a propeller of 2 m with the other one at rest
@@ -14,14 +14,14 @@ const LARGEST_POWER_BIAS: f64 = 1.0;
 const AIRMODES: [Airmode; 3] = [Airmode::Disabled, Airmode::RollPitch, Airmode::RollPitchYaw];
 
 keys! { TABLE = "[allocation]":
-    AIRMODE "airmode" = "\"disabled\"", Kind::Word(&["disabled", "roll-pitch", "roll-pitch-yaw"]),
+    AIRMODE "airmode" = "\"disabled\"", ValueKind::Word(&["disabled", "roll-pitch", "roll-pitch-yaw"]),
         "For which torques the thrust may rise, with PX4's meaning; disabled without it.";
-    AXES "axes" = "[\"roll\", \"pitch\", \"yaw\", \"thrust\"]", Kind::Words(&["roll", "pitch", "yaw", "thrust"]),
+    AXES "axes" = "[\"roll\", \"pitch\", \"yaw\", \"thrust\"]", ValueKind::Words(&["roll", "pitch", "yaw", "thrust"]),
         "The served axes, all four without it; fewer for one or two units, which cannot produce all.";
-    YAW_RESERVE_NM "yaw_reserve_nm" = "0.05", Kind::Number(Range::Within([0.0, LARGEST_EFFORT])),
+    YAW_RESERVE_NM "yaw_reserve_nm" = "0.05", ValueKind::Number(Range::Within([0.0, LARGEST_EFFORT])),
         "Yaw torque that comes before thrust, N m.".default(0.0)
         .refusing("must be 0 or more newton metres", "the reserve holds either way about zero yaw; write its size");
-    POWER_BIAS_NM_PER_N "power_bias_nm_per_n" = "0.005", Kind::Number(Range::Within([-LARGEST_POWER_BIAS, LARGEST_POWER_BIAS])),
+    POWER_BIAS_NM_PER_N "power_bias_nm_per_n" = "0.005", ValueKind::Number(Range::Within([-LARGEST_POWER_BIAS, LARGEST_POWER_BIAS])),
         "Least power: torque per thrust of every unit while none is near its limits, N m per N.".default(0.0);
 }
 

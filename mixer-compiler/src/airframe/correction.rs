@@ -6,7 +6,7 @@ mod law;
 pub use self::law::{Correction, Law};
 use crate::diagnostic::{Code, Diagnostic, any_of, number, rounded};
 use crate::quantity::{self, Quantity};
-use crate::spec::keys::{self, Key, Kind, keys};
+use crate::spec::keys::{self, Key, ValueKind, keys};
 use crate::spec::{Fields, Point, Spanned};
 
 /// How far k may be from 1 at the reference: points are written to three or four digits.
@@ -34,33 +34,33 @@ const LEAST_FACTOR: f64 = 1e-3;
 /// ones overflow.
 const LARGEST_FACTOR: f64 = 100.0;
 
-const OF_VOLTAGE: Kind = Kind::Number(keys::Range::Within([0.0, LARGEST_OF_VOLTAGE]));
+const OF_VOLTAGE: ValueKind = ValueKind::Number(keys::Range::Within([0.0, LARGEST_OF_VOLTAGE]));
 const VOLTAGE_LABEL: &str = "not a motor's exponent";
 const VOLTAGE_HELP: &str = "thrust and torque follow about the power 1.75 of the voltage";
-const OF_DENSITY: Kind = Kind::Number(keys::Range::Within([0.0, LARGEST_OF_DENSITY]));
+const OF_DENSITY: ValueKind = ValueKind::Number(keys::Range::Within([0.0, LARGEST_OF_DENSITY]));
 const DENSITY_LABEL: &str = "not a rotor's exponent";
 const DENSITY_HELP: &str =
     "it is the exponent of the voltage less 1, about 0.75, or 1 with speed controllers that hold a speed";
 
 keys! { VOLTAGE_TABLE = "[voltage]":
-    REFERENCE_V "reference_v" = "14.8", Kind::Number(keys::Range::Positive),
+    REFERENCE_V "reference_v" = "14.8", ValueKind::Number(keys::Range::Positive),
         "Voltage of the bench, V.".required();
-    RANGE_V "range_v" = "[12.8, 16.8]", Kind::Numbers([2, 2]),
+    RANGE_V "range_v" = "[12.8, 16.8]", ValueKind::Numbers([2, 2]),
         "Lowest and highest voltage in flight, V; outside it is clamped and flagged.".required();
     THRUST_EXPONENT "thrust_exponent" = "1.75", OF_VOLTAGE,
         "Thrust is multiplied by (V / reference)^exponent.".refusing(VOLTAGE_LABEL, VOLTAGE_HELP);
-    THRUST_POINTS "thrust_points" = "[[12.8, 0.78], [14.8, 1.0], [16.8, 1.25]]", Kind::Points,
+    THRUST_POINTS "thrust_points" = "[[12.8, 0.78], [14.8, 1.0], [16.8, 1.25]]", ValueKind::Points,
         "Thrust is multiplied by a factor between these points [V, factor].";
     TORQUE_EXPONENT "torque_exponent" = "1.75", OF_VOLTAGE,
         "Torque is multiplied by (V / reference)^exponent.".refusing(VOLTAGE_LABEL, VOLTAGE_HELP);
-    TORQUE_POINTS "torque_points" = "[[12.8, 0.78], [14.8, 1.0], [16.8, 1.25]]", Kind::Points,
+    TORQUE_POINTS "torque_points" = "[[12.8, 0.78], [14.8, 1.0], [16.8, 1.25]]", ValueKind::Points,
         "Torque is multiplied by a factor between these points [V, factor].";
 }
 
 keys! { AIR_TABLE = "[air]":
-    REFERENCE_DENSITY "reference_density_kg_m3" = "1.204", Kind::Number(keys::Range::Positive),
+    REFERENCE_DENSITY "reference_density_kg_m3" = "1.204", ValueKind::Number(keys::Range::Positive),
         "Density of the bench's air, kg/m3: pressure in Pa / (287.05 x temperature in K).".required();
-    RANGE_DENSITY "range_kg_m3" = "[0.75, 1.4]", Kind::Numbers([2, 2]),
+    RANGE_DENSITY "range_kg_m3" = "[0.75, 1.4]", ValueKind::Numbers([2, 2]),
         "Least and largest density in flight, kg/m3; outside it is clamped and flagged.".required();
     THRUST_OF_DENSITY "thrust_exponent" = "0.75", OF_DENSITY,
         "Thrust is multiplied by (density / reference)^exponent; that of [voltage] less 1 without it, 1 with speed controllers that hold a speed."

@@ -2,7 +2,7 @@
 
 use crate::diagnostic::Code;
 use crate::spec::Fields;
-use crate::spec::keys::{Kind, Range, keys};
+use crate::spec::keys::{Range, ValueKind, keys};
 
 /// Highest degree of the paper's polynomial in (f, Q): 136 terms per throttle.
 const HIGHEST_INVERSE_DEGREE: usize = 15;
@@ -11,15 +11,15 @@ const HIGHEST_INVERSE_DEGREE: usize = 15;
 const METHODS: [&str; 2] = ["auto", "polynomial"];
 
 keys! { TABLE = "[inverse]":
-    THRUST_TOLERANCE_N "thrust_tolerance_n" = "0.01", Kind::Number(Range::Positive),
+    THRUST_TOLERANCE_N "thrust_tolerance_n" = "0.01", ValueKind::Number(Range::Positive),
         "What a unit's thrust may miss at any voltage and density, N.".default(THRUST_TOLERANCE)
         .refusing("must be above 0", "the largest error that the mixer may make; 0.01 N is the default");
-    TORQUE_TOLERANCE_NM "torque_tolerance_nm" = "1e-4", Kind::Number(Range::Positive),
+    TORQUE_TOLERANCE_NM "torque_tolerance_nm" = "1e-4", ValueKind::Number(Range::Positive),
         "What a unit's torque may miss at any voltage and density, N m.".default(TORQUE_TOLERANCE)
         .refusing("must be above 0", "the largest error that the mixer may make; 0.0001 N m is the default");
-    METHOD "method" = "\"auto\"", Kind::Word(&METHODS),
+    METHOD "method" = "\"auto\"", ValueKind::Word(&METHODS),
         "auto: the cheapest evaluator that is proven to meet the tolerances; polynomial: the paper's, with a degree.";
-    DEGREE "degree" = "7", Kind::Count([1, HIGHEST_INVERSE_DEGREE]),
+    DEGREE "degree" = "7", ValueKind::Count([1, HIGHEST_INVERSE_DEGREE]),
         "Total degree of method = \"polynomial\".";
 }
 

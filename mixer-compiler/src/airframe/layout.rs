@@ -13,27 +13,27 @@ use std::ops;
 use super::pair::Spin;
 use super::unit::{self, FARTHEST_M, MOST_UNITS};
 use crate::diagnostic::{Code, number, rounded};
-use crate::spec::keys::{Key, Kind, Range, keys};
+use crate::spec::keys::{Key, Range, ValueKind, keys};
 use crate::spec::{Fields, Spanned};
 
 const ARM: &str = "the distance of every unit from the centre of gravity, in metres";
 
 keys! { TABLE = "[layout]":
-    ARM_M "arm_m" = "0.45", Kind::Number(Range::Positive),
+    ARM_M "arm_m" = "0.45", ValueKind::Number(Range::Positive),
         "From the centre of gravity to each mast, m.".required()
         .refusing("must be above 0", ARM);
-    UNITS "units" = "4", Kind::Count([1, MOST_UNITS]),
+    UNITS "units" = "4", ValueKind::Count([1, MOST_UNITS]),
         "Pairs of rotors.".required();
-    FIRST_ANGLE_DEG "first_angle_deg" = "45", Kind::Number(Range::Within([-360.0, 360.0])),
+    FIRST_ANGLE_DEG "first_angle_deg" = "45", ValueKind::Number(Range::Within([-360.0, 360.0])),
         "Of the first unit, degrees clockwise from the nose as seen from above.".required()
         .refusing("more than a turn", "degrees clockwise from the nose, seen from above");
-    FIRST_SPIN "first_spin" = "\"cw\"", Kind::Word(&Spin::WORDS),
+    FIRST_SPIN "first_spin" = "\"cw\"", ValueKind::Word(&Spin::WORDS),
         "Of the first unit's upper rotor. They alternate for an even number of units and turn alike for an odd one.";
-    SPINS "spins" = "[\"cw\", \"ccw\", \"cw\", \"ccw\"]", Kind::Words(&Spin::WORDS),
+    SPINS "spins" = "[\"cw\", \"ccw\", \"cw\", \"ccw\"]", ValueKind::Words(&Spin::WORDS),
         "Of every unit's upper rotor, instead of first_spin.";
-    PAIRS "pairs" = "[\"front\", \"rear\", \"rear\", \"front\"]", Kind::Texts,
+    PAIRS "pairs" = "[\"front\", \"rear\", \"rear\", \"front\"]", ValueKind::Texts,
         "With several `[[pair]]`: the name of every unit's.";
-    CHANNELS "channels" = "[[0, 4], [1, 5], [2, 6], [3, 7]]", Kind::ListOfChannels,
+    CHANNELS "channels" = "[[0, 4], [1, 5], [2, 6], [3, 7]]", ValueKind::ListOfChannels,
         "Outputs of the upper and of the lower rotor of every unit; k and n + k without it.";
 }
 

@@ -8,7 +8,7 @@ use super::power::{self, Power};
 use super::rotor_alone::{self, RotorAlone};
 use super::throttle::Throttle;
 use super::uncertainty::{self, Uncertainty};
-use crate::spec::keys::{Key, Kind, keys};
+use crate::spec::keys::{Key, ValueKind, keys};
 use crate::spec::{Fields, Numbers};
 
 /// Words of `stronger`: whether it is the lower rotor.
@@ -18,31 +18,31 @@ const STRONGER_WORDS: [&str; 2] = ["upper", "lower"];
 const TERMS: [usize; 2] = [8, 14];
 
 keys! { TABLE = "[pair]":
-    NAME "name" = "\"front\"", Kind::Text,
+    NAME "name" = "\"front\"", ValueKind::Text,
         "With several `[[pair]]`: the name by which a unit has it.";
-    BASIS "basis" = "\"biquadratic\"", Kind::Word(&Basis::WORDS),
+    BASIS "basis" = "\"biquadratic\"", ValueKind::Word(&Basis::WORDS),
         "Terms of the polynomials in the upper throttle u and the lower throttle l. biquadratic: u2l2, u2l, u2, ul2, ul, u, l2, l; cubic: u3, u2l, ul2, l3, u2, ul, l2, u, l; quartic: u4, u3l, u2l2, ul3, l4, then as cubic.".required();
-    THRUST_N "thrust_n" = "[5.2075, -2.1892, ..]", Kind::Numbers(TERMS),
+    THRUST_N "thrust_n" = "[5.2075, -2.1892, ..]", ValueKind::Numbers(TERMS),
         "Coefficients of the total thrust, N, in the order of the basis.".required();
-    TORQUE_NM "torque_nm" = "[-0.0673, -0.0606, ..]", Kind::Numbers(TERMS),
+    TORQUE_NM "torque_nm" = "[-0.0673, -0.0606, ..]", ValueKind::Numbers(TERMS),
         "Coefficients of the total torque, N m, positive where the lower rotor outweighs the upper.".required();
-    UPPER_SPIN "upper_spin" = "\"cw\"", Kind::Word(&Spin::WORDS),
+    UPPER_SPIN "upper_spin" = "\"cw\"", ValueKind::Word(&Spin::WORDS),
         "How the upper rotor turned on the bench, seen from above.".required();
-    STRONGER "stronger" = "\"lower\"", Kind::Word(&STRONGER_WORDS),
+    STRONGER "stronger" = "\"lower\"", ValueKind::Word(&STRONGER_WORDS),
         "The rotor of more pitch, KV or diameter, where they differ: a lower rotor that is the stronger one looks like rotors that were exchanged (MIX301).";
-    LOWER_OUT "lower_out" = "", Kind::Table(&rotor_alone::LOWER_OUT),
+    LOWER_OUT "lower_out" = "", ValueKind::Table(&rotor_alone::LOWER_OUT),
         "What the upper rotor gives alone, the lower one at rest: used while the lower one is out.";
-    UPPER_OUT "upper_out" = "", Kind::Table(&rotor_alone::UPPER_OUT),
+    UPPER_OUT "upper_out" = "", ValueKind::Table(&rotor_alone::UPPER_OUT),
         "What the lower rotor gives alone, the upper one at rest: used while the upper one is out.";
-    POWER "power" = "", Kind::Table(&power::TABLE),
+    POWER "power" = "", ValueKind::Table(&power::TABLE),
         "Electrical power, for what `check` and the report say of least power.";
-    UNCERTAINTY "uncertainty" = "", Kind::Table(&uncertainty::TABLE),
+    UNCERTAINTY "uncertainty" = "", ValueKind::Table(&uncertainty::TABLE),
         "How far the model of the pair may be from the pair.";
-    BORROWED_FROM "borrowed_from" = "\"the X8 of Chebbi et al. 2020\"", Kind::Text,
+    BORROWED_FROM "borrowed_from" = "\"the X8 of Chebbi et al. 2020\"", ValueKind::Text,
         "The vehicle whose pair this is, where it stands in for one that was not measured yet: a warning (MIX309), the verdict and saved files say so.";
-    BENCH_OPTIONS "bench_options" = "[\"--swap\", \"--unit\", \"thrust=gf\"]", Kind::Texts,
+    BENCH_OPTIONS "bench_options" = "[\"--swap\", \"--unit\", \"thrust=gf\"]", ValueKind::Texts,
         "Options of `cargo mixer identify` that the bench files needed to be read: `report --bench` reads them so, too.";
-    BENCH_V "bench_v" = "[13.96, 14.9]", Kind::Numbers([2, 2]),
+    BENCH_V "bench_v" = "[13.96, 14.9]", ValueKind::Numbers([2, 2]),
         "Least and greatest voltage of the bench's rows, V, where they were not brought to one: the pair has their sag, which [voltage] would count again (MIX324).";
 }
 

@@ -5,13 +5,13 @@ use super::limits;
 use super::throttle::Throttle;
 use crate::diagnostic::Code;
 use crate::spec::Fields;
-use crate::spec::keys::{Kind, keys};
+use crate::spec::keys::{ValueKind, keys};
 
 /// Coefficients of a power map: the quartic's and a constant.
 const POWER_TERMS: usize = 15;
 
 keys! { TABLE = "[pair.power]":
-    POWER_W "power_w" = "[0, 0, 0, 0, 0, 620, 90, 40, 560, 160, -60, 150, 8, 6, 5]", Kind::Numbers([POWER_TERMS, POWER_TERMS]),
+    POWER_W "power_w" = "[0, 0, 0, 0, 0, 620, 90, 40, 560, 160, -60, 150, 8, 6, 5]", ValueKind::Numbers([POWER_TERMS, POWER_TERMS]),
         "Electrical power of both rotors, W: the quartic's coefficients and a constant; `identify` writes it.".required();
 }
 

@@ -5,19 +5,19 @@ use super::limits;
 use super::throttle::Throttle;
 use crate::diagnostic::{Code, number};
 use crate::spec::Fields;
-use crate::spec::keys::{Kind, keys};
+use crate::spec::keys::{ValueKind, keys};
 
 keys! { LOWER_OUT = "[pair.lower_out]":
-    UPPER_THRUST_N "thrust_n" = "[0.2, 14.1, -1.7]", Kind::Numbers([3, 3]),
+    UPPER_THRUST_N "thrust_n" = "[0.2, 14.1, -1.7]", ValueKind::Numbers([3, 3]),
         "Thrust of the upper rotor alone, N: a1, a2, a3 of a1 x + a2 x2 + a3 x3.".required();
-    UPPER_TORQUE_NM "torque_nm" = "[-0.01, -0.2, 0.02]", Kind::Numbers([3, 3]),
+    UPPER_TORQUE_NM "torque_nm" = "[-0.01, -0.2, 0.02]", ValueKind::Numbers([3, 3]),
         "Its torque, N m, signed as that of the pair.".required();
 }
 
 keys! { UPPER_OUT = "[pair.upper_out]":
-    LOWER_THRUST_N "thrust_n" = "[0.2, 14.1, -1.7]", Kind::Numbers([3, 3]),
+    LOWER_THRUST_N "thrust_n" = "[0.2, 14.1, -1.7]", ValueKind::Numbers([3, 3]),
         "Thrust of the lower rotor alone, N: a1, a2, a3 of a1 x + a2 x2 + a3 x3.".required();
-    LOWER_TORQUE_NM "torque_nm" = "[0.01, 0.2, -0.02]", Kind::Numbers([3, 3]),
+    LOWER_TORQUE_NM "torque_nm" = "[0.01, 0.2, -0.02]", ValueKind::Numbers([3, 3]),
         "Its torque, N m, signed as that of the pair.".required();
 }
 

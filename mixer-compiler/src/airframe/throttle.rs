@@ -2,10 +2,10 @@
 
 use crate::diagnostic::{Code, number};
 use crate::spec::Fields;
-use crate::spec::keys::{Kind, Range, keys};
+use crate::spec::keys::{Range, ValueKind, keys};
 
 /// A share of full throttle.
-const SHARE: Kind = Kind::Number(Range::Within([0.0, 1.0]));
+const SHARE: ValueKind = ValueKind::Number(Range::Within([0.0, 1.0]));
 
 keys! { TABLE = "[throttle]":
     MIN "min" = "0.10", SHARE,

@@ -1,9 +1,9 @@
 //! `[pair.uncertainty]`: how far the model of the pair may be from the pair itself.
 
 use crate::spec::Fields;
-use crate::spec::keys::{Kind, Range, keys};
+use crate::spec::keys::{Range, ValueKind, keys};
 
-const PERCENT: Kind = Kind::Number(Range::UpTo(100.0));
+const PERCENT: ValueKind = ValueKind::Number(Range::UpTo(100.0));
 const LABEL: &str = "expected per cent of full scale";
 const HELP: &str = "one standard deviation; leave `[pair.uncertainty]` out where it is not known";
 
@@ -12,7 +12,7 @@ keys! { TABLE = "[pair.uncertainty]":
         "Standard deviation of the thrust, % of the thrust at full throttle.".required().refusing(LABEL, HELP);
     TORQUE_PERCENT "torque_percent" = "3.7", PERCENT,
         "Standard deviation of the torque, % of the largest torque.".required().refusing(LABEL, HELP);
-    SOURCE "source" = "\"prediction\"", Kind::Word(&["bench", "prediction"]),
+    SOURCE "source" = "\"prediction\"", ValueKind::Word(&["bench", "prediction"]),
         "Whether the pair was measured or predicted from one rotor; bench without it.";
 }
 

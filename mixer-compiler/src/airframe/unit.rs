@@ -2,19 +2,19 @@
 
 use super::pair::Spin;
 use crate::diagnostic::{Code, Diagnostic, number, rounded};
-use crate::spec::keys::{Kind, keys};
+use crate::spec::keys::{ValueKind, keys};
 use crate::spec::{Fields, Places, Spanned, place_in};
 
 keys! { TABLE = "[[unit]]":
-    POSITION_M "position_m" = "[0.3182, 0.3182, 0.0]", Kind::Numbers([3, 3]),
+    POSITION_M "position_m" = "[0.3182, 0.3182, 0.0]", ValueKind::Numbers([3, 3]),
         "Forward, right and down from the centre of gravity, m.".required();
-    UPPER_SPIN "upper_spin" = "\"cw\"", Kind::Word(&Spin::WORDS),
+    UPPER_SPIN "upper_spin" = "\"cw\"", ValueKind::Word(&Spin::WORDS),
         "How this unit's upper rotor turns, seen from above.".required();
-    CHANNELS "channels" = "[0, 4]", Kind::Channels,
+    CHANNELS "channels" = "[0, 4]", ValueKind::Channels,
         "Outputs of the upper and of the lower rotor; all units together have 0 to 2n - 1.".required();
-    PAIR "pair" = "\"front\"", Kind::Text,
+    PAIR "pair" = "\"front\"", ValueKind::Text,
         "Name of its `[[pair]]`, where there are several.";
-    AXIS "axis" = "[0.0, 0.0, -1.0]", Kind::Numbers([3, 3]),
+    AXIS "axis" = "[0.0, 0.0, -1.0]", ValueKind::Numbers([3, 3]),
         "Unit vector of the thrust, straight up without it.";
 }
 

@@ -2,15 +2,15 @@
 
 use crate::diagnostic::{Code, number};
 use crate::spec::Fields;
-use crate::spec::keys::{Kind, Range, keys};
+use crate::spec::keys::{Range, ValueKind, keys};
 
 keys! { TABLE = "[vehicle]":
-    MASS_KG "mass_kg" = "3.2", Kind::Number(Range::UpTo(1e4)),
+    MASS_KG "mass_kg" = "3.2", ValueKind::Number(Range::UpTo(1e4)),
         "Take-off mass, kg.".required()
         .refusing("expected kilograms", "the take-off mass, battery and payload included");
-    INERTIA_KG_M2 "inertia_kg_m2" = "[0.080, 0.087, 0.160]", Kind::Numbers([3, 3]),
+    INERTIA_KG_M2 "inertia_kg_m2" = "[0.080, 0.087, 0.160]", ValueKind::Numbers([3, 3]),
         "Moments of inertia about the forward, right and down axes, kg m2, for simulators.";
-    ROTOR_INERTIA "rotor_inertia_kg_m2" = "0.0003", Kind::Number(Range::UpTo(MOST_ROTOR_INERTIA)),
+    ROTOR_INERTIA "rotor_inertia_kg_m2" = "0.0003", ValueKind::Number(Range::UpTo(MOST_ROTOR_INERTIA)),
         "Moment of inertia of one rotor with its motor's bell about its axis, kg m2, for simulators; estimated from the largest thrust without it."
         .refusing("not a propeller's inertia", "a propeller of 10 inch has about 0.00005 kg m2, one of 16 inch 0.0004, one of 28 inch 0.003");
 }

@@ -35,7 +35,7 @@ const BEGINNINGS: [(&[u8], &str); 12] = [
 
 /// What a text is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum Content {
     /// An airframe file, whole or not.
     Airframe,
     /// The model of a pair without a vehicle.
@@ -54,21 +54,21 @@ pub enum Kind {
     Other,
 }
 
-impl Kind {
+impl Content {
     /// What it is and who reads it, for a message that refuses it.
     #[must_use]
     pub fn told(self) -> &'static str {
         match self {
-            Kind::Airframe => "an airframe file, which cargo mixer check reads",
-            Kind::Pair => "the model of a pair, which cargo mixer new --pair reads",
-            Kind::Px4 => "a parameter file of PX4, which cargo mixer import reads",
-            Kind::Ardupilot => "a parameter file of ArduPilot, which cargo mixer import reads",
-            Kind::Betaflight => "a dump of Betaflight or INAV, which cargo mixer import reads",
-            Kind::Table => {
+            Content::Airframe => "an airframe file, which cargo mixer check reads",
+            Content::Pair => "the model of a pair, which cargo mixer new --pair reads",
+            Content::Px4 => "a parameter file of PX4, which cargo mixer import reads",
+            Content::Ardupilot => "a parameter file of ArduPilot, which cargo mixer import reads",
+            Content::Betaflight => "a dump of Betaflight or INAV, which cargo mixer import reads",
+            Content::Table => {
                 "a table: cargo mixer identify reads the bench file of a pair, cargo mixer predict the run of one rotor"
             }
-            Kind::Foreign(what) => what,
-            Kind::Other => "a text of another kind",
+            Content::Foreign(what) => what,
+            Content::Other => "a text of another kind",
         }
     }
 }
@@ -102,11 +102,11 @@ pub fn foreign(bytes: &[u8]) -> Option<&'static str> {
     known.map(|(_, what)| *what)
 }
 
-/// The kind of a text by its words. Of what several kinds could be the first counts, in the order of [`Kind`].
+/// The kind of a text by its words. Of what several kinds could be the first counts, in the order of [`Content`].
 #[must_use]
-pub fn of(text: &str) -> Kind {
+pub fn of(text: &str) -> Content {
     if let Some(what) = foreign(text.as_bytes()) {
-        return Kind::Foreign(what);
+        return Content::Foreign(what);
     }
     let lines = || {
         let lines = text.trim_start_matches('\u{feff}').lines();
@@ -116,23 +116,23 @@ pub fn of(text: &str) -> Kind {
     if !keys.is_empty() {
         let is_of_vehicle = keys.iter().any(|key| matches!(*key, "unit" | "layout"));
         return match keys.contains(&"pair") && !is_of_vehicle {
-            true => Kind::Pair,
-            false => Kind::Airframe,
+            true => Content::Pair,
+            false => Content::Airframe,
         };
     }
     if text.lines().any(is_of_a_dump) {
-        return Kind::Betaflight;
+        return Content::Betaflight;
     }
     let count = |of_stack: &[&str]| lines().filter(|line| is_parameter(line, of_stack)).count();
     match (count(&OF_PX4), count(&OF_ARDUPILOT)) {
         (0, 0) => {}
-        (px4, ardupilot) if px4 >= ardupilot => return Kind::Px4,
-        _ => return Kind::Ardupilot,
+        (px4, ardupilot) if px4 >= ardupilot => return Content::Px4,
+        _ => return Content::Ardupilot,
     }
     let first = lines().find(|line| !line.is_empty()).unwrap_or_default();
     match first.contains([',', ';', '\t']) {
-        true => Kind::Table,
-        false => Kind::Other,
+        true => Content::Table,
+        false => Content::Other,
     }
 }
 
@@ -188,50 +188,53 @@ mod tests {
     #[test]
     fn texts_are_told_by_their_words() {
         for (text, kind) in [
-            ("name = \"x8\"\n[throttle]\nmin = 0.1\n[[unit]]\n", Kind::Airframe),
+            (
+                "name = \"x8\"\n[throttle]\nmin = 0.1\n[[unit]]\n",
+                Content::Airframe,
+            ),
             (
                 "\u{feff}# mine\r\n[layout]\r\narm_m = 0,45\r\n[pair]\r\n",
-                Kind::Airframe,
+                Content::Airframe,
             ),
-            ("name = \u{201c}x8\u{201d}\n", Kind::Airframe),
-            ("[throttle]\nmin = 0.2\n\n[pair]\n", Kind::Pair),
-            ("[[pair]]\nname = \"front\"\n", Kind::Pair),
-            ("pair.basis = \"cubic\"\n", Kind::Pair),
+            ("name = \u{201c}x8\u{201d}\n", Content::Airframe),
+            ("[throttle]\nmin = 0.2\n\n[pair]\n", Content::Pair),
+            ("[[pair]]\nname = \"front\"\n", Content::Pair),
+            ("pair.basis = \"cubic\"\n", Content::Pair),
             (
                 "# Vehicle-Id Component-Id Name Value Type\n1\t1\tCA_ROTOR_COUNT\t8\t6\n",
-                Kind::Px4,
+                Content::Px4,
             ),
-            ("CA_ROTOR0_PX = 0.35   # was 1\n", Kind::Px4),
+            ("CA_ROTOR0_PX = 0.35   # was 1\n", Content::Px4),
             (
                 "#!/bin/sh\nmixer load a b\nparam set-default -s CA_ROTOR0_PX $ARM\n",
-                Kind::Px4,
+                Content::Px4,
             ),
-            ("FRAME_CLASS,4\nFRAME_TYPE,1\n", Kind::Ardupilot),
-            ("MOT_SPIN_MIN     0.15 @READONLY\n", Kind::Ardupilot),
+            ("FRAME_CLASS,4\nFRAME_TYPE,1\n", Content::Ardupilot),
+            ("MOT_SPIN_MIN     0.15 @READONLY\n", Content::Ardupilot),
             (
                 "# reset configuration to default settings\ndefaults nosave\n\nmixer OCTOX8\n",
-                Kind::Betaflight,
+                Content::Betaflight,
             ),
             (
                 "# Betaflight / STM32F7X2 (S7X2) 4.5.1\nset gyro_lpf1_static_hz = 0\n",
-                Kind::Betaflight,
+                Content::Betaflight,
             ),
             (
                 "# INAV/MATEKF765 7.1.2\nset platform_type = AIRPLANE\n",
-                Kind::Betaflight,
+                Content::Betaflight,
             ),
-            ("batch start\nboard_name X\n", Kind::Betaflight),
-            ("upper,lower,thrust_n\n0.3,0.4,5\n", Kind::Table),
+            ("batch start\nboard_name X\n", Content::Betaflight),
+            ("upper,lower,thrust_n\n0.3,0.4,5\n", Content::Table),
             // What a bench notes above its table.
-            ("name = My prop\nbatch,thrust\n1;2\n", Kind::Other),
-            ("feature,thrust\n1,2\n", Kind::Table),
-            ("SERVO output (us),Thrust (gf)\n1100,5\n", Kind::Table),
+            ("name = My prop\nbatch,thrust\n1;2\n", Content::Other),
+            ("feature,thrust\n1,2\n", Content::Table),
+            ("SERVO output (us),Thrust (gf)\n1100,5\n", Content::Table),
             (
                 "ULog\u{1}",
-                Kind::Foreign("a flight log, which cargo mixer review reads"),
+                Content::Foreign("a flight log, which cargo mixer review reads"),
             ),
-            ("these are mine\n", Kind::Other),
-            ("", Kind::Other),
+            ("these are mine\n", Content::Other),
+            ("", Content::Other),
         ] {
             assert_eq!(of(text), kind, "{text}");
         }

@@ -24,14 +24,16 @@ const INDEPENDENT: f64 = 1e-3;
 /// Shares below this are the rounding of zeros: symmetric frames have sparse tables.
 const ZERO: f64 = 1e-14;
 
-/// D (M D)+.
+/// The weighted pseudo-inverse D (M D)+ of the effectiveness M (m x k): of all efforts that give a
+/// wrench it takes those of least norm |D^-1 eta|.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PseudoInverse {
-    /// Columns of M by its rows: efforts per unit of each row.
+    /// k x m. A row per column of M, which is an effort (N or N m), a column per row of M, which is an
+    /// axis of the wrench (N m or N): efforts per unit of wrench.
     pub matrix: DMatrix<f64>,
     /// |A| |A+| over the number of rows, in Frobenius norms: 1 where the rows of A are orthogonal.
     pub condition: f64,
-    /// Largest entry of |A A+ - I|.
+    /// Largest entry of |A A+ - I| with A = M D, rows scaled to length 1; no unit.
     pub residual: f64,
 }
 

@@ -6,7 +6,7 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::keys::{Key, Kind, Shape};
+use super::keys::{Key, Shape, ValueKind};
 use super::value::{Item, Read, place_of};
 use crate::diagnostic::{Code, Diagnostic, MOST_FAULTS, any_of, nearest, number, quoted};
 
@@ -94,7 +94,7 @@ impl<'a, 'f> Fields<'a, 'f> {
         }
         let field = self.read::<f64>(key)?;
         let x = *field.get_ref();
-        if let Kind::Number(range) = key.kind
+        if let ValueKind::Number(range) = key.kind
             && let Some([label, help]) = key.refusal
             && !range.contains(x)
         {
@@ -119,7 +119,7 @@ impl<'a, 'f> Fields<'a, 'f> {
         field: &Spanned<String>,
         meanings: &[T],
     ) -> Option<T> {
-        let (Kind::Word(words) | Kind::Words(words)) = key.kind else {
+        let (ValueKind::Word(words) | ValueKind::Words(words)) = key.kind else {
             return None;
         };
         let written = field.get_ref();
@@ -146,7 +146,9 @@ impl<'a, 'f> Fields<'a, 'f> {
         read: impl FnOnce(&mut Fields<'a, '_>) -> T,
     ) -> Option<T> {
         let item = self.item(key)?;
-        let Kind::Table(shape) = key.kind else { return None };
+        let ValueKind::Table(shape) = key.kind else {
+            return None;
+        };
         let help = match item.value {
             DeValue::Array(_) => format!("there is one such table: head it `{}`", shape.header),
             _ => format!("head the table `{}`", shape.header),
@@ -161,11 +163,12 @@ impl<'a, 'f> Fields<'a, 'f> {
         key: &'static Key,
         mut read: impl FnMut(&mut Fields<'a, '_>) -> T,
     ) -> Vec<T> {
-        let (Some(item), Kind::Tables(shape) | Kind::TableOrTables(shape)) = (self.item(key), key.kind)
+        let (Some(item), ValueKind::Tables(shape) | ValueKind::TableOrTables(shape)) =
+            (self.item(key), key.kind)
         else {
             return Vec::new();
         };
-        let is_alone = matches!(key.kind, Kind::TableOrTables(_));
+        let is_alone = matches!(key.kind, ValueKind::TableOrTables(_));
         let DeValue::Array(elements) = item.value else {
             if is_alone {
                 let help = format!("head the table `{}`", shape.header);
@@ -278,7 +281,7 @@ impl<'a, 'f> Fields<'a, 'f> {
     fn missing(&self, key: &Key) -> Diagnostic {
         let (name, path, example) = (key.name, self.key_path(key.name), key.example());
         let (message, help) = match key.kind {
-            Kind::Table(shape) | Kind::Tables(shape) | Kind::TableOrTables(shape) => (
+            ValueKind::Table(shape) | ValueKind::Tables(shape) | ValueKind::TableOrTables(shape) => (
                 format!("the table `{example}` is missing"),
                 format!("add the table `{example}` with {}", joined(shape.required())),
             ),

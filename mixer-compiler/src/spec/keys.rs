@@ -14,7 +14,7 @@ pub struct Key {
     /// Whether its table must have it.
     pub required: bool,
     /// What it holds.
-    pub kind: Kind,
+    pub kind: ValueKind,
     /// What it means, in a sentence.
     meaning: &'static str,
     /// The number that stands for it where the file does not have it.
@@ -28,7 +28,7 @@ impl Key {
     pub(crate) const fn new(
         name: &'static str,
         example: &'static str,
-        kind: Kind,
+        kind: ValueKind,
         meaning: &'static str,
     ) -> Self {
         Key {
@@ -60,7 +60,9 @@ impl Key {
     /// The line, or the header, that a user could add.
     pub(crate) fn example(&self) -> String {
         match self.kind {
-            Kind::Table(shape) | Kind::Tables(shape) | Kind::TableOrTables(shape) => shape.header.to_owned(),
+            ValueKind::Table(shape) | ValueKind::Tables(shape) | ValueKind::TableOrTables(shape) => {
+                shape.header.to_owned()
+            }
             _ => format!("{} = {}", self.name, self.example),
         }
     }
@@ -77,7 +79,7 @@ impl Key {
 
 /// What a key holds.
 #[derive(Clone, Copy, Debug)]
-pub enum Kind {
+pub enum ValueKind {
     /// Any text.
     Text,
     /// A list of texts.
@@ -139,7 +141,7 @@ impl Range {
     }
 }
 
-impl Kind {
+impl ValueKind {
     /// What a value is, in words.
     pub fn words(self) -> String {
         let count = |[least, most]: [usize; 2]| match least == most {
@@ -147,20 +149,20 @@ impl Kind {
             false => format!("{least} to {most}"),
         };
         match self {
-            Kind::Text => "text".to_owned(),
-            Kind::Texts => "list of texts".to_owned(),
-            Kind::Name => "lower-case letters and digits, joined by `-` or `_`".to_owned(),
-            Kind::Word(words) => any_of(words.iter().copied()),
-            Kind::Words(words) => format!("list of {}", any_of(words.iter().copied())),
-            Kind::Number(range) => format!("number, {}", range.words()),
-            Kind::Count(range) => format!("whole number, {}", count(range)),
-            Kind::Numbers(range) => format!("{} numbers", count(range)),
-            Kind::Points => "list of `[V, factor]`".to_owned(),
-            Kind::Channels => "`[upper, lower]`".to_owned(),
-            Kind::ListOfChannels => "list of `[upper, lower]`".to_owned(),
-            Kind::Table(_) => "table".to_owned(),
-            Kind::Tables(_) => "tables".to_owned(),
-            Kind::TableOrTables(_) => "table, or tables".to_owned(),
+            ValueKind::Text => "text".to_owned(),
+            ValueKind::Texts => "list of texts".to_owned(),
+            ValueKind::Name => "lower-case letters and digits, joined by `-` or `_`".to_owned(),
+            ValueKind::Word(words) => any_of(words.iter().copied()),
+            ValueKind::Words(words) => format!("list of {}", any_of(words.iter().copied())),
+            ValueKind::Number(range) => format!("number, {}", range.words()),
+            ValueKind::Count(range) => format!("whole number, {}", count(range)),
+            ValueKind::Numbers(range) => format!("{} numbers", count(range)),
+            ValueKind::Points => "list of `[V, factor]`".to_owned(),
+            ValueKind::Channels => "`[upper, lower]`".to_owned(),
+            ValueKind::ListOfChannels => "list of `[upper, lower]`".to_owned(),
+            ValueKind::Table(_) => "table".to_owned(),
+            ValueKind::Tables(_) => "tables".to_owned(),
+            ValueKind::TableOrTables(_) => "table, or tables".to_owned(),
         }
     }
 }
@@ -195,7 +197,9 @@ impl Shape {
     /// This table, and those in it.
     pub fn all(&'static self) -> Vec<&'static Shape> {
         let inner = self.keys.iter().flat_map(|key| match key.kind {
-            Kind::Table(shape) | Kind::Tables(shape) | Kind::TableOrTables(shape) => shape.all(),
+            ValueKind::Table(shape) | ValueKind::Tables(shape) | ValueKind::TableOrTables(shape) => {
+                shape.all()
+            }
             _ => Vec::new(),
         });
         std::iter::once(self).chain(inner).collect()

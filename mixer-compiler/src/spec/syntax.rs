@@ -7,7 +7,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue, Error};
 
 use super::value::place_of;
-use crate::diagnostic::kind::{self, Kind};
+use crate::diagnostic::content::{self, Content};
 use crate::diagnostic::source::Source;
 use crate::diagnostic::{Code, Diagnostic, quoted};
 
@@ -27,8 +27,8 @@ const MOST: usize = 100;
 pub(crate) fn parse<'a>(source: &'a Source, faults: &mut Vec<Diagnostic>) -> Option<DeTable<'a>> {
     let (table, mut errors) = DeTable::parse_recoverable(&source.text);
     if !errors.is_empty() && has_no_table(&source.text) {
-        match kind::of(&source.text) {
-            Kind::Airframe | Kind::Pair => {}
+        match content::of(&source.text) {
+            Content::Airframe | Content::Pair => {}
             other => {
                 faults.push(Diagnostic::of_another_kind(other));
                 return None;
@@ -38,7 +38,7 @@ pub(crate) fn parse<'a>(source: &'a Source, faults: &mut Vec<Diagnostic>) -> Opt
     let table = table.into_inner();
     let has = |key: &str| table.contains_key(key);
     if errors.is_empty() && has("pair") && !["name", "unit", "layout"].into_iter().any(has) {
-        faults.push(Diagnostic::of_another_kind(Kind::Pair));
+        faults.push(Diagnostic::of_another_kind(Content::Pair));
         return None;
     }
     let sound = errors.iter().all(|error| error.message() == DUPLICATE);

@@ -68,7 +68,7 @@ pub struct ClosedFormUnit {
 pub struct Facets {
     /// The normal's components along roll and pitch.
     pub normal: [f32; 2],
-    /// The bounds.
+    /// `[low, high]`: N, or N m of a wall.
     pub bounds: [f32; 2],
 }
 

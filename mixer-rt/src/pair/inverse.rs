@@ -19,7 +19,7 @@ use crate::arithmetic::Scalar;
 pub struct ThrottleRange {
     /// Idle: no rotor is ever commanded below.
     pub min: f32,
-    /// The ceiling.
+    /// No rotor is ever commanded above.
     pub max: f32,
 }
 

@@ -15,7 +15,7 @@ use criterion::{BenchmarkGroup, Criterion, Throughput, measurement::WallTime};
 use isolated_rotors::{IsolatedRotors, IsolatedTables};
 use mixer_rt::Wrench;
 use mixer_rt::tables::{Airmode, AllocationMethod, Inverse, Quantity, Tables};
-use mixer_setpoints::{Kind, Requests};
+use mixer_setpoints::{RequestKind, Requests};
 use mixer_tests::golden;
 use wls::WeightedLeastSquares;
 use wls_alloc::wls::ControlAllocator;
@@ -29,7 +29,10 @@ const REQUESTS: usize = 256;
 
 type Asked = Vec<(Wrench, f32)>;
 
-fn asked<P: Quantity, I: Inverse, S: AllocationMethod<P>>(tables: &Tables<'_, P, I, S>, kind: Kind) -> Asked {
+fn asked<P: Quantity, I: Inverse, S: AllocationMethod<P>>(
+    tables: &Tables<'_, P, I, S>,
+    kind: RequestKind,
+) -> Asked {
     Requests::new(tables, kind, 8)
         .take(REQUESTS)
         .map(|request| (Wrench::from_array(request.wrench), request.voltage_v))
@@ -78,7 +81,10 @@ macro_rules! airframe {
         const ROTORS: usize = $module::CHANNELS;
         let compiled = golden::compile($name).unwrap_or_else(|e| panic!("{e}"));
         let isolated = IsolatedTables::new(&compiled);
-        for (kind, set) in [(Kind::Attainable, "attainable"), (Kind::Saturated, "saturated")] {
+        for (kind, set) in [
+            (RequestKind::Attainable, "attainable"),
+            (RequestKind::Saturated, "saturated"),
+        ] {
             let asked = asked(&$module::TABLES, kind);
             let name = format!("{}, {set}", $name);
             let mut group = $criterion.benchmark_group(&name);

@@ -4,7 +4,7 @@
 use std::fs;
 use std::path::Path;
 
-use mixer_setpoints::{Kind, Requests};
+use mixer_setpoints::{RequestKind, Requests};
 
 use crate::Measured;
 
@@ -18,7 +18,7 @@ pub(crate) fn write(measured: &Measured, out: &Path) -> Result<(), String> {
     let Measured { name, path, compiled } = measured;
     println!("cargo::rerun-if-changed={}", path.display());
     let tables = compiled.tables.view();
-    for (kind, extension) in [(Kind::Attainable, "attainable"), (Kind::Saturated, "saturated")] {
+    for (kind, extension) in [(RequestKind::Attainable, "attainable"), (RequestKind::Saturated, "saturated")] {
         let bytes: Vec<u8> = Requests::new(&tables, kind, SEED)
             .take(COUNT)
             .flat_map(|request| {

@@ -16,7 +16,7 @@ use mixer_rt::Conditions;
 
 pub use mixture::Mixture;
 pub use random::Random;
-pub use requests::{Kind, Requests};
+pub use requests::{RequestKind, Requests};
 pub use rotors_out::RotorsOut;
 
 /// Half-widths and limits of the setpoints to draw.

@@ -5,7 +5,7 @@ use mixer_rt::{
     tables::{AllocationMethod, Inverse, Quantity, Tables},
 };
 
-use crate::{Digest, Kind, Ranges, Requests, Setpoint, Setpoints};
+use crate::{Digest, Ranges, RequestKind, Requests, Setpoint, Setpoints};
 
 /// Endless sequence: attainable requests, saturated ones, and setpoints that may not be finite, in
 /// turn.
@@ -20,7 +20,7 @@ pub struct Mixture<'a, P, I, S> {
 impl<'a, P: Quantity, I: Inverse, S: AllocationMethod<P>> Mixture<'a, P, I, S> {
     /// The sequence of one seed for the mixer of `tables`.
     pub fn new(tables: &'a Tables<'a, P, I, S>, seed: u64) -> Self {
-        let attainable = Requests::new(tables, Kind::Attainable, seed);
+        let attainable = Requests::new(tables, RequestKind::Attainable, seed);
         let [roll, pitch, yaw, thrust] = attainable.authority();
         let [low, high] = tables
             .voltage
@@ -37,7 +37,7 @@ impl<'a, P: Quantity, I: Inverse, S: AllocationMethod<P>> Mixture<'a, P, I, S> {
         };
         Mixture {
             attainable,
-            saturated: Requests::new(tables, Kind::Saturated, seed),
+            saturated: Requests::new(tables, RequestKind::Saturated, seed),
             anything: Setpoints::new(seed, ranges),
             index: 0,
         }

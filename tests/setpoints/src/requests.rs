@@ -8,7 +8,7 @@ use crate::{Random, Setpoint};
 
 /// Which requests to draw.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum RequestKind {
     /// What random throttles give by the airframe's own forward map, so that every one can be
     /// delivered (to rounding). The voltage lies in its range.
     Attainable,
@@ -22,7 +22,7 @@ pub enum Kind {
 #[derive(Clone, Debug)]
 pub struct Requests<'a, P, I, S> {
     random: Random,
-    kind: Kind,
+    kind: RequestKind,
     tables: &'a Tables<'a, P, I, S>,
     throttle: ThrottleRange,
     voltage: Option<&'a Law<'a>>,
@@ -34,7 +34,7 @@ pub struct Requests<'a, P, I, S> {
 
 impl<'a, P: Quantity, I: Inverse, S: AllocationMethod<P>> Requests<'a, P, I, S> {
     /// The sequence of one seed.
-    pub fn new(tables: &'a Tables<'a, P, I, S>, kind: Kind, seed: u64) -> Self {
+    pub fn new(tables: &'a Tables<'a, P, I, S>, kind: RequestKind, seed: u64) -> Self {
         let ThrottleRange { min, max } = tables.throttle;
         let mut authority = [0.0; 4];
         for (index, unit) in tables.units.iter().enumerate() {
@@ -202,11 +202,11 @@ impl<P: Quantity, I: Inverse, S: AllocationMethod<P>> Iterator for Requests<'_, 
 
     fn next(&mut self) -> Option<Setpoint> {
         let (conditions, wrench) = match self.kind {
-            Kind::Attainable => {
+            RequestKind::Attainable => {
                 let conditions = self.conditions(0.0);
                 (conditions, self.attainable(conditions))
             }
-            Kind::Saturated => {
+            RequestKind::Saturated => {
                 let outside = if self.random.index(8) == 0 { 2.0 } else { 0.0 };
                 let conditions = self.conditions(outside);
                 (conditions, self.saturated(conditions))

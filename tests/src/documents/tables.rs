@@ -4,10 +4,10 @@ use isolated_rotors::IsolatedTables;
 use mixer_compiler::airframe::KEYS;
 use mixer_compiler::atmosphere::{self, density_at, pressure_at};
 use mixer_compiler::diagnostic::rounded_up;
-use mixer_compiler::spec::keys::{Key, Kind, Shape};
+use mixer_compiler::spec::keys::{Key, Shape, ValueKind};
 use mixer_compiler::{Compiled, Source};
 use mixer_facts::hover;
-use mixer_files::report::comparison::{Answer, Comparison, throttles};
+use mixer_files::report::comparison::{Comparison, YawResponse, throttles};
 use mixer_files::report::study::Study;
 use mixer_rt::Wrench;
 
@@ -53,7 +53,7 @@ fn wrench(values: [f64; 4], decimals: usize) -> String {
 pub(super) fn keys() -> Vec<Table> {
     let row = |key: &Key| {
         let value = match key.kind {
-            Kind::Table(shape) | Kind::Tables(shape) | Kind::TableOrTables(shape) => {
+            ValueKind::Table(shape) | ValueKind::Tables(shape) | ValueKind::TableOrTables(shape) => {
                 format!("`{}`", shape.header)
             }
             kind => kind.words(),
@@ -214,7 +214,7 @@ pub(super) fn static_comparison() -> Result<String, String> {
     // Negative commands mirror the positive ones.
     for row in comparison.rows.iter().skip(YAW_COMMANDS / 2) {
         for (mixer, answer) in [("coaxial", &row.coaxial), ("conventional", &row.conventional)] {
-            let Answer {
+            let YawResponse {
                 efforts,
                 within,
                 wrench,

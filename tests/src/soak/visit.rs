@@ -112,12 +112,12 @@ impl<'a> Visit<'a> {
         };
         let faults = soundness::faults(frame, request, &answer)?;
         for (kind, check) in [
-            (soundness::Kind::Throttle, Check::Throttle),
-            (soundness::Kind::Truth, Check::Truth),
-            (soundness::Kind::Flag, Check::Flag),
-            (soundness::Kind::Overstepped, Check::Overstepped),
-            (soundness::Kind::Turned, Check::Turned),
-            (soundness::Kind::Raised, Check::Raised),
+            (soundness::FaultKind::Throttle, Check::Throttle),
+            (soundness::FaultKind::Truth, Check::Truth),
+            (soundness::FaultKind::Flag, Check::Flag),
+            (soundness::FaultKind::Overstepped, Check::Overstepped),
+            (soundness::FaultKind::Turned, Check::Turned),
+            (soundness::FaultKind::Raised, Check::Raised),
         ] {
             let fault = faults.iter().find(|fault| fault.kind == kind);
             // A fault is one however small it is.

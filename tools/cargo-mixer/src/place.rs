@@ -10,7 +10,7 @@ use mixer_compiler::Source;
 use mixer_compiler::diagnostic::printable_lines;
 use mixer_files::new::new;
 use mixer_identify::refusal::Refusal;
-use mixer_identify::texts::Answer;
+use mixer_identify::texts::Outcome;
 
 use crate::frame_args::FrameArgs;
 use crate::{Done, bad_usage, output, print_error, print_note};
@@ -38,7 +38,7 @@ pub struct Place {
 /// # Errors
 /// A frame that is not fully described.
 pub fn tables_or_airframe<T>(
-    answer: &Answer<T>,
+    answer: &Outcome<T>,
     frame: Option<&FrameArgs>,
     output: Option<&Path>,
 ) -> Result<String, String> {
@@ -90,7 +90,7 @@ impl Place {
     }
 
     /// Writes report and tables, and says what comes next.
-    pub(crate) fn write<T>(&self, answer: &Answer<T>, verbose: bool) -> Done {
+    pub(crate) fn write<T>(&self, answer: &Outcome<T>, verbose: bool) -> Done {
         let report = match (self.json, verbose) {
             (true, _) => &answer.json,
             (_, true) => &answer.details,

@@ -17,7 +17,7 @@ mod text;
 mod unused;
 
 use mixer_compiler::airframe::Airframe;
-use mixer_compiler::diagnostic::kind::{self, Kind};
+use mixer_compiler::diagnostic::content::{self, Content};
 use mixer_compiler::model::PairMap;
 use mixer_compiler::{Source, symmetry};
 use mixer_facts::checklist;
@@ -124,9 +124,9 @@ pub fn import(file: &Source, pair: Option<&Source>, options: &Options<'_>) -> Re
 }
 
 fn read(file: &Source, arm_m: Option<f64>) -> Result<Imported, String> {
-    let mut imported = match kind::of(&file.text) {
-        Kind::Betaflight => betaflight::import::read(file, arm_m)?,
-        other @ (Kind::Airframe | Kind::Pair | Kind::Foreign(_)) => {
+    let mut imported = match content::of(&file.text) {
+        Content::Betaflight => betaflight::import::read(file, arm_m)?,
+        other @ (Content::Airframe | Content::Pair | Content::Foreign(_)) => {
             return Err(format!("{}: this is {}", file.name, other.told()));
         }
         _ => of_parameters(file, arm_m)?,

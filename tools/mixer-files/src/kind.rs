@@ -1,8 +1,8 @@
 //! What a file is that somebody drops on a page or names on a command line.
 
 use mixer_compiler::Source;
-use mixer_compiler::diagnostic::kind::{self, Kind as Words};
-use mixer_identify::bench::Kind as Rotors;
+use mixer_compiler::diagnostic::content::{self, Content};
+use mixer_identify::bench::BenchKind;
 use mixer_identify::bench::text::normalised;
 use mixer_identify::identified::Settings;
 use mixer_identify::texts::{self, Text};
@@ -11,7 +11,7 @@ use serde::Serialize;
 /// What a file is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Kind {
+pub enum FileKind {
     /// An airframe file.
     Airframe,
     /// The model of a pair without a vehicle.
@@ -28,11 +28,11 @@ pub enum Kind {
     Run,
 }
 
-impl Kind {
+impl FileKind {
     /// Whether `import` reads it.
     #[must_use]
     pub fn is_of_stack(self) -> bool {
-        matches!(self, Kind::Px4 | Kind::Ardupilot | Kind::Betaflight)
+        matches!(self, FileKind::Px4 | FileKind::Ardupilot | FileKind::Betaflight)
     }
 }
 
@@ -40,7 +40,7 @@ impl Kind {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct File {
     /// What it is.
-    pub kind: Kind,
+    pub kind: FileKind,
     /// Its text: what the commands that read this kind of file make of its bytes.
     pub text: String,
     /// Points of a bench file that can be read with these settings, else 0.
@@ -48,11 +48,11 @@ pub struct File {
 }
 
 /// Endings of names, for texts whose words do not tell.
-const ENDINGS: [(&str, Kind); 4] = [
-    (".toml", Kind::Airframe),
-    (".params", Kind::Px4),
-    (".param", Kind::Ardupilot),
-    (".parm", Kind::Ardupilot),
+const ENDINGS: [(&str, FileKind); 4] = [
+    (".toml", FileKind::Airframe),
+    (".params", FileKind::Px4),
+    (".param", FileKind::Ardupilot),
+    (".parm", FileKind::Ardupilot),
 ];
 
 /// Tells a file by its content, and where that does not tell by its name. `identify` and `predict` are how these
@@ -68,15 +68,15 @@ pub fn read(name: &str, bytes: &[u8], identify: &Settings, predict: &Settings) -
     };
     let lower = name.to_ascii_lowercase();
     let by_name = ENDINGS.iter().find(|(ending, _)| lower.ends_with(ending));
-    let kind = match (kind::of(text), by_name) {
-        (Words::Airframe, _) => Kind::Airframe,
-        (Words::Pair, _) => Kind::Pair,
-        (Words::Px4, _) => Kind::Px4,
-        (Words::Ardupilot, _) => Kind::Ardupilot,
-        (Words::Betaflight, _) => Kind::Betaflight,
-        (Words::Foreign(what), _) => return Err(format!("{name}: this is {what}")),
-        (Words::Table | Words::Other, Some((_, kind))) => *kind,
-        (Words::Table | Words::Other, None) => return bench(name, bytes, identify, predict),
+    let kind = match (content::of(text), by_name) {
+        (Content::Airframe, _) => FileKind::Airframe,
+        (Content::Pair, _) => FileKind::Pair,
+        (Content::Px4, _) => FileKind::Px4,
+        (Content::Ardupilot, _) => FileKind::Ardupilot,
+        (Content::Betaflight, _) => FileKind::Betaflight,
+        (Content::Foreign(what), _) => return Err(format!("{name}: this is {what}")),
+        (Content::Table | Content::Other, Some((_, kind))) => *kind,
+        (Content::Table | Content::Other, None) => return bench(name, bytes, identify, predict),
     };
     match read {
         Ok(Source { text, .. }) => Ok(File {
@@ -97,17 +97,17 @@ fn bench(name: &str, bytes: &[u8], identify: &Settings, predict: &Settings) -> R
     };
     let mut without_torque = identify.clone();
     without_torque.preparation.is_correction = true;
-    let (mut best, mut furthest) = (Kind::Map, 0);
+    let (mut best, mut furthest) = (FileKind::Map, 0);
     for (settings, kind) in [
-        (identify, Kind::Map),
-        (predict, Kind::Run),
-        (&without_torque, Kind::Map),
+        (identify, FileKind::Map),
+        (predict, FileKind::Run),
+        (&without_torque, FileKind::Map),
     ] {
         match texts::read(&content, settings) {
             Ok(bench) => {
                 let kind = match bench.kind {
-                    Rotors::Pair => Kind::Map,
-                    Rotors::SingleRotor => Kind::Run,
+                    BenchKind::Pair => FileKind::Map,
+                    BenchKind::SingleRotor => FileKind::Run,
                 };
                 return Ok(File {
                     kind,

@@ -2,7 +2,7 @@
 //! it.
 
 use mixer_compiler::airframe::KEYS;
-use mixer_compiler::spec::keys::{Key, Kind, Range, Shape};
+use mixer_compiler::spec::keys::{Key, Range, Shape, ValueKind};
 use serde_json::{Map, Value, json};
 
 /// The line by which an airframe file names its schema.
@@ -49,33 +49,33 @@ fn property(key: &Key) -> Value {
     let number = || json!({ "type": "number" });
     let channel = || json!({ "type": "integer", "minimum": 0 });
     let mut property = match key.kind {
-        Kind::Text => json!({ "type": "string" }),
-        Kind::Texts => json!({ "type": "array", "items": { "type": "string" } }),
-        Kind::Name => json!({ "type": "string", "pattern": "^[a-z][a-z0-9]*([-_][a-z0-9]+)*$" }),
-        Kind::Word(words) => json!({ "type": "string", "enum": words }),
-        Kind::Words(words) => json!({ "type": "array", "items": { "type": "string", "enum": words } }),
-        Kind::Number(Range::Positive) => json!({ "type": "number", "exclusiveMinimum": 0 }),
-        Kind::Number(Range::UpTo(most)) => {
+        ValueKind::Text => json!({ "type": "string" }),
+        ValueKind::Texts => json!({ "type": "array", "items": { "type": "string" } }),
+        ValueKind::Name => json!({ "type": "string", "pattern": "^[a-z][a-z0-9]*([-_][a-z0-9]+)*$" }),
+        ValueKind::Word(words) => json!({ "type": "string", "enum": words }),
+        ValueKind::Words(words) => json!({ "type": "array", "items": { "type": "string", "enum": words } }),
+        ValueKind::Number(Range::Positive) => json!({ "type": "number", "exclusiveMinimum": 0 }),
+        ValueKind::Number(Range::UpTo(most)) => {
             json!({ "type": "number", "exclusiveMinimum": 0, "maximum": bound(most) })
         }
-        Kind::Number(Range::Within([least, most])) => {
+        ValueKind::Number(Range::Within([least, most])) => {
             json!({ "type": "number", "minimum": bound(least), "maximum": bound(most) })
         }
-        Kind::Count([least, most]) => json!({ "type": "integer", "minimum": least, "maximum": most }),
-        Kind::Numbers(count) => array(number(), count),
-        Kind::Points => json!({ "type": "array", "items": array(number(), [2, 2]) }),
-        Kind::Channels => array(channel(), [2, 2]),
-        Kind::ListOfChannels => json!({ "type": "array", "items": array(channel(), [2, 2]) }),
-        Kind::Table(shape) => table(shape),
+        ValueKind::Count([least, most]) => json!({ "type": "integer", "minimum": least, "maximum": most }),
+        ValueKind::Numbers(count) => array(number(), count),
+        ValueKind::Points => json!({ "type": "array", "items": array(number(), [2, 2]) }),
+        ValueKind::Channels => array(channel(), [2, 2]),
+        ValueKind::ListOfChannels => json!({ "type": "array", "items": array(channel(), [2, 2]) }),
+        ValueKind::Table(shape) => table(shape),
         // What is said of properties holds of tables alone, what is said of items of lists.
-        Kind::TableOrTables(shape) => {
+        ValueKind::TableOrTables(shape) => {
             let mut either = table(shape);
             either["type"] = json!(["object", "array"]);
             either["items"] = json!({ "$ref": format!("#/properties/{}", key.name) });
             either["minItems"] = json!(1);
             either
         }
-        Kind::Tables(shape) => json!({ "type": "array", "items": table(shape), "minItems": 1 }),
+        ValueKind::Tables(shape) => json!({ "type": "array", "items": table(shape), "minItems": 1 }),
     };
     property["description"] = json!(key.meaning());
     property

@@ -15,7 +15,7 @@ pub type Vector = (Wrench, Conditions);
 
 /// The kind of a golden vector. The table holds the kinds in this order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Kind {
+pub enum VectorKind {
     /// Zero, thrusts to beyond the ceiling at voltages and densities to beyond their ranges, each axis
     /// alone.
     ByHand,
@@ -58,17 +58,17 @@ const FAINT: [f64; 6] = [1e-3, 1e-6, 1e-20, 1e-38, 1e-40, 1e-45];
 const ROTORS_OUT: [usize; 2] = [12, 6];
 
 /// Setpoints with all rotors, kind by kind.
-pub fn by_kind(compiled: &Compiled) -> Vec<(Kind, Vec<Vector>)> {
+pub fn by_kind(compiled: &Compiled) -> Vec<(VectorKind, Vec<Vector>)> {
     let mut draw = Draw::new(compiled);
     let by_hand = draw.by_hand();
     let attainable = (0..ATTAINABLE).map(|index| draw.attainable(index)).collect();
     let border = (0..DIRECTIONS).flat_map(|_| draw.corner()).collect();
     vec![
-        (Kind::ByHand, by_hand),
-        (Kind::Attainable, attainable),
-        (Kind::Border, border),
-        (Kind::Saturated, draw.saturated()),
-        (Kind::Faint, draw.faint()),
+        (VectorKind::ByHand, by_hand),
+        (VectorKind::Attainable, attainable),
+        (VectorKind::Border, border),
+        (VectorKind::Saturated, draw.saturated()),
+        (VectorKind::Faint, draw.faint()),
     ]
 }
 

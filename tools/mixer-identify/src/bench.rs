@@ -33,7 +33,7 @@ pub mod units;
 /// What a file can be used for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Kind {
+pub enum BenchKind {
     /// Both throttles vary: the pair's map.
     Pair,
     /// One rotor: only the dependence on voltage can be taken from it.
@@ -99,7 +99,7 @@ pub struct Bench {
     /// Format of the header.
     pub format: String,
     /// Pair or single rotor.
-    pub kind: Kind,
+    pub kind: BenchKind,
     /// Which rotor turns in a run of one, where the header has a throttle for each.
     pub turning: Option<Turning>,
     /// Whether the user said which columns are the upper and which the lower rotor's.
@@ -198,7 +198,7 @@ const MOST_POINTS: usize = 10_000;
 
 /// Which rotors turned in a log.
 struct Turned {
-    kind: Kind,
+    kind: BenchKind,
     /// Of the two, or the one that turned.
     rotors: &'static [usize],
     /// Whether the log has a throttle for each.
@@ -217,10 +217,10 @@ impl Turned {
         }
         let two_throttles = one_signal || !one_throttle;
         let [upper, lower] = [0, 1].map(|rotor| samples.iter().any(|s| s.throttle[rotor] > STOP_THROTTLE));
-        let (kind, rotors): (Kind, &[usize]) = match (two_throttles, upper, lower) {
-            (true, true, true) => (Kind::Pair, &[0, 1]),
-            (true, false, _) => (Kind::SingleRotor, &[1]),
-            _ => (Kind::SingleRotor, &[0]),
+        let (kind, rotors): (BenchKind, &[usize]) = match (two_throttles, upper, lower) {
+            (true, true, true) => (BenchKind::Pair, &[0, 1]),
+            (true, false, _) => (BenchKind::SingleRotor, &[1]),
+            _ => (BenchKind::SingleRotor, &[0]),
         };
         Turned {
             kind,
@@ -233,13 +233,13 @@ impl Turned {
     /// What the user should know of it.
     fn note(&self, columns: &Columns, how: &Preparation) -> Option<String> {
         match self.kind {
-            Kind::SingleRotor if self.two_throttles && !how.own_columns => {
+            BenchKind::SingleRotor if self.two_throttles && !how.own_columns => {
                 let still = if self.rotors == [0] { "lower" } else { "upper" };
                 Some(format!(
                     "the {still} rotor stands still throughout: a single rotor"
                 ))
             }
-            Kind::Pair if !columns.sides_named && !self.one_signal => {
+            BenchKind::Pair if !columns.sides_named && !self.one_signal => {
                 let upper = columns[Quantity::Throttle].rotors[0].as_ref();
                 Some(format!(
                     "the header does not say which rotor is above: that of {:?} is taken (--swap exchanges)",
@@ -272,10 +272,10 @@ impl Turned {
         may_lack_torque: bool,
     ) -> Result<Point, &'static str> {
         let [u, l] = match self.kind {
-            Kind::Pair => sample.throttle,
-            Kind::SingleRotor => [sample.throttle[self.rotors[0]], 0.0],
+            BenchKind::Pair => sample.throttle,
+            BenchKind::SingleRotor => [sample.throttle[self.rotors[0]], 0.0],
         };
-        let lacks_torque = self.kind == Kind::Pair && !may_lack_torque && torque.is_nan();
+        let lacks_torque = self.kind == BenchKind::Pair && !may_lack_torque && torque.is_nan();
         if u.is_nan() || l.is_nan() {
             return Err("the throttle is empty");
         } else if thrust.is_nan() {
@@ -284,7 +284,7 @@ impl Turned {
             return Err("the torque is empty");
         }
         let [voltage, imbalance] = supply(self.rotors, sample.voltage);
-        let alone = self.kind == Kind::SingleRotor;
+        let alone = self.kind == BenchKind::SingleRotor;
         let shaft = |&rotor: &usize| {
             let own = if alone {
                 torque
@@ -365,13 +365,15 @@ pub fn prepare(log: Log, how: &Preparation) -> Result<Bench, Refusal> {
     let may_lack_torque = how.is_correction || turned.one_signal;
     let mut record_drifts = false;
     let (signs, sums) = match turned.kind {
-        Kind::Pair => {
+        BenchKind::Pair => {
             let uneven = uneven_levels(&samples);
             record_drifts = uneven.is_some();
             notes.extend(uneven);
             sign::pair(&name, &columns, &samples, &how.signs, may_lack_torque, &mut notes)?
         }
-        Kind::SingleRotor => sign::single(&columns, turned.rotors[0], how.own_columns, &samples, &how.signs),
+        BenchKind::SingleRotor => {
+            sign::single(&columns, turned.rotors[0], how.own_columns, &samples, &how.signs)
+        }
     };
     let mut points = Vec::new();
     for (sample, sums) in samples.iter().zip(sums) {
@@ -399,7 +401,7 @@ pub fn prepare(log: Log, how: &Preparation) -> Result<Bench, Refusal> {
             "rows with both rotors turning and thrust and torque measured",
         ));
     }
-    let alone = turned.kind == Kind::SingleRotor && turned.two_throttles;
+    let alone = turned.kind == BenchKind::SingleRotor && turned.two_throttles;
     Ok(Bench {
         no_power: columns.no_power(),
         turning: alone.then_some([Turning::Upper, Turning::Lower][turned.rotors[0]]),

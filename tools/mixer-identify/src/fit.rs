@@ -183,19 +183,19 @@ pub struct Fit {
     pub ci95: Vec<f64>,
     /// Coefficient of determination about the mean.
     pub r2: f64,
-    /// Root of the mean squared residual, over n points.
+    /// Root of the mean squared residual over all points, N or N m.
     pub residual_rms: f64,
-    /// Greatest absolute residual.
+    /// Greatest absolute residual, N or N m.
     pub residual_max: f64,
-    /// Root of the mean squared leave-one-out error.
+    /// Root of the mean squared leave-one-out error, N or N m.
     pub leave_one_out_rms: f64,
-    /// Greatest absolute leave-one-out error.
+    /// Greatest absolute leave-one-out error, N or N m.
     pub leave_one_out_max: f64,
-    /// Greatest absolute measured value: the scale of percentages.
+    /// Greatest absolute measured value, N or N m: the scale of percentages.
     pub full_scale: f64,
     /// 2-norm condition number of the matrix of monomials.
     pub condition_number: f64,
-    /// Points and degrees of freedom.
+    /// Points of the bench files that were fitted.
     pub points: usize,
     /// Points less terms.
     pub degrees_of_freedom: usize,

@@ -7,12 +7,12 @@ use std::iter::{once, repeat};
 use mixer_compiler::diagnostic::{printable, wrapped};
 use toml_edit::{DocumentMut, value};
 
-use super::bench::Kind;
-use super::fact::{Detail, Fact, of_identified, of_predicted, runs};
+use super::bench::BenchKind;
 use super::fit::power::Power;
 use super::fit::{Fit, hundredths};
 use super::identified::Identified;
 use super::rotor::predict::Predicted;
+use super::statement::{Detail, Statement, of_identified, of_predicted, runs};
 use super::statistics::extent;
 use super::table::{commented, numbers, table, texts};
 
@@ -41,8 +41,8 @@ pub fn text(identified: &Identified) -> String {
 
 /// The same without the torque of least power.
 pub fn tables(id: &Identified) -> String {
-    let facts = of_identified(id);
-    let about = |table: &str| comments(&facts, table);
+    let statements = of_identified(id);
+    let about = |table: &str| comments(&statements, table);
     let mut document = DocumentMut::new();
     let mut tail = String::new();
     let power = match &id.power {
@@ -126,7 +126,7 @@ const MEASURED: &str = "# The voltage of the flight must be measured where the b
 
 /// Least and greatest voltage of the pair's rows, V.
 fn rows_v(id: &Identified) -> Option<[f64; 2]> {
-    let of_pair = id.files.iter().filter(|file| file.kind == Kind::Pair);
+    let of_pair = id.files.iter().filter(|file| file.kind == BenchKind::Pair);
     let [low, high] = extent(of_pair.flat_map(|file| &file.points).map(|p| p.voltage));
     (low <= high).then(|| [low, high].map(hundredths))
 }
@@ -212,16 +212,16 @@ fn to_fill_in(reference: Option<f64>, range: Option<[f64; 2]>, exponents: [Optio
 
 /// The tables of a prediction.
 pub fn of_prediction(predicted: &Predicted) -> String {
-    let facts = of_predicted(predicted);
+    let statements = of_predicted(predicted);
     let mut head = format!(
         "# Predicted by {}, not measured.\n{}",
         predicted.generator,
-        comments(&facts, "")
+        comments(&statements, "")
     );
     for warning in &predicted.warnings {
         head += &comment("! ", warning);
     }
-    let mut document = predicted.pair.tables(&|table| comments(&facts, table));
+    let mut document = predicted.pair.tables(&|table| comments(&statements, table));
     if !predicted.options.is_empty() {
         document["pair"][BENCH_OPTIONS] = texts(&predicted.options);
     }
@@ -237,20 +237,25 @@ pub fn of_prediction(predicted: &Predicted) -> String {
     };
     let mut tail = String::new();
     if !supply.closed_loop {
-        voltage(&mut document, &mut tail, &comments(&facts, "voltage"), &supply);
+        voltage(
+            &mut document,
+            &mut tail,
+            &comments(&statements, "voltage"),
+            &supply,
+        );
     }
     let air = predicted.air.table(document.contains_key("voltage"));
     format!("{head}{document}{tail}{air}")
 }
 
-/// The facts about a table.
-fn comments(facts: &[Fact], table: &str) -> String {
-    let is_told = |fact: &&Fact| fact.table == table && fact.told != Detail::Reported;
-    let line = |fact: &Fact| match fact.name {
-        "" => comment("  ", &fact.text),
-        name => comment("", &format!("{name}: {}", fact.text)),
+/// The statements about a table.
+fn comments(statements: &[Statement], table: &str) -> String {
+    let is_told = |statement: &&Statement| statement.table == table && statement.told != Detail::Reported;
+    let line = |statement: &Statement| match statement.name {
+        "" => comment("  ", &statement.text),
+        name => comment("", &format!("{name}: {}", statement.text)),
     };
-    facts.iter().filter(is_told).map(line).collect()
+    statements.iter().filter(is_told).map(line).collect()
 }
 
 /// A comment with `mark` before its first line. TOML has no control characters in comments.

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use crate::air::{Air, DENSITY_EXPONENT};
 use crate::bench::read::Reading;
-use crate::bench::{Bench, Kind, Point, Preparation, equal_commands, is_one_signal};
+use crate::bench::{Bench, BenchKind, Point, Preparation, equal_commands, is_one_signal};
 use crate::fit::balance::balanced;
 use crate::fit::hundredths;
 use crate::fit::pair::{self, Pair};
@@ -68,12 +68,18 @@ impl Identified {
     }
 }
 
-/// Identifies what benches hold that have been read.
+/// Identifies a pair, its voltage law and its power from benches that have been read.
+///
+/// # Errors
+/// Two files of one name, copies, columns that are one signal, or points that do not determine the pair.
 pub fn from_benches(benches: Vec<Bench>, wishes: &FitOptions) -> Result<Identified, Refusal> {
     with_runs(benches, [None, None], wishes)
 }
 
 /// [`from_benches`] with runs of the upper and of the lower rotor alone.
+///
+/// # Errors
+/// Those of [`from_benches`], and a run that is of a pair, of the other rotor or too short to be fitted.
 pub fn with_runs(
     mut benches: Vec<Bench>,
     mut runs: [Option<Bench>; 2],
@@ -109,7 +115,7 @@ pub fn with_runs(
     let read = benches.iter().chain(runs.iter().flatten());
     let mut warnings: Vec<String> = read.flat_map(Bench::offsets_told).collect();
     warnings.extend(air.doubt());
-    let pair = if has(Kind::Pair) {
+    let pair = if has(BenchKind::Pair) {
         let pair = pair::identify(&benches, voltage.as_ref(), wishes, &told)?;
         warnings.extend(pair.warnings.clone());
         let of_runs = with_alone(pair, &runs, voltage.as_ref(), &mut warnings);
@@ -123,7 +129,7 @@ pub fn with_runs(
         warnings.extend(voltage_warnings(v, wishes.pack_v.is_some()));
         warnings.extend(sag(&benches, v));
     }
-    if has(Kind::Pair) && has(Kind::SingleRotor) {
+    if has(BenchKind::Pair) && has(BenchKind::SingleRotor) {
         warnings.push("single-rotor files serve the voltage exponents only, not the pair's map".into());
     }
     if wishes.pack_v.is_some() && exponents.is_none() && !wishes.closed_loop {
@@ -237,7 +243,7 @@ fn names(benches: &[Bench]) -> String {
 
 /// Refuses pairs whose rotors have the same throttle throughout.
 fn two_signals(benches: &[Bench]) -> Result<(), Refusal> {
-    let pairs = benches.iter().filter(|bench| bench.kind == Kind::Pair);
+    let pairs = benches.iter().filter(|bench| bench.kind == BenchKind::Pair);
     let files: Vec<&str> = pairs.clone().map(|bench| bench.file.as_str()).collect();
     let mut points = pairs.flat_map(|bench| &bench.points);
     match !files.is_empty() && points.all(|p| is_one_signal([p.u, p.l])) {
@@ -292,8 +298,8 @@ fn no_copies(benches: &[Bench]) -> Result<(), Refusal> {
 
 /// The exponents from the pair's own maps if these tell any, else from single rotors.
 fn dependence(benches: &[Bench]) -> Option<Voltage> {
-    let pair = voltage::examine(benches, Kind::Pair);
-    let single = voltage::examine(benches, Kind::SingleRotor);
+    let pair = voltage::examine(benches, BenchKind::Pair);
+    let single = voltage::examine(benches, BenchKind::SingleRotor);
     match (pair, single) {
         (Some(p), Some(s)) if p.thrust.estimate().is_none() && s.thrust.estimate().is_some() => Some(s),
         (p, s) => p.or(s),
@@ -316,7 +322,7 @@ fn declared(
             "the supply voltage of every row, in a column of its own (--column voltage=HEADER)",
         );
     };
-    if !benches.iter().any(|b| b.kind == Kind::Pair) {
+    if !benches.iter().any(|b| b.kind == BenchKind::Pair) {
         return refuse(
             "one throttle only, so there is no map of a pair",
             "a sweep of both throttles independently; or no --voltage-exponent, to identify it from these files",
@@ -366,7 +372,7 @@ fn sag(benches: &[Bench], voltage: &Voltage) -> Option<String> {
         let [low, high] = extent(volts);
         if high > 0.0 { 1.0 - low / high } else { 0.0 }
     };
-    let maps = benches.iter().filter(|b| b.kind == Kind::Pair);
+    let maps = benches.iter().filter(|b| b.kind == BenchKind::Pair);
     let sag = maps.map(sag_of).fold(0.0, f64::max);
     if sag <= SAG {
         return None;

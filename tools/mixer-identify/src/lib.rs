@@ -32,7 +32,6 @@
 
 pub mod air;
 pub mod bench;
-pub mod fact;
 pub mod fit;
 pub mod fragment;
 pub mod identified;
@@ -43,6 +42,7 @@ pub mod plan;
 pub mod refusal;
 pub mod report;
 pub mod rotor;
+pub mod statement;
 mod statistics;
 mod table;
 pub mod texts;

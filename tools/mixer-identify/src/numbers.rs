@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 use mixer_compiler::airframe::TYPICAL_EXPONENT;
 use mixer_compiler::model::{GROWTH, TORQUE_PER_THRUST_M, TORQUE_SPAN_M};
 
-use crate::bench::{Bench, Kind, Point, equal_commands, is_one_signal};
+use crate::bench::{Bench, BenchKind, Point, equal_commands, is_one_signal};
 use crate::fit::Design;
 use crate::fit::robust::JUDGING;
 use crate::fit::voltage::off_span;
@@ -246,9 +246,9 @@ impl<'a> Run<'a> {
         let near = bench
             .points
             .iter()
-            .filter(|p| bench.kind == Kind::SingleRotor || (p.u - p.l).abs() < EQUAL);
+            .filter(|p| bench.kind == BenchKind::SingleRotor || (p.u - p.l).abs() < EQUAL);
         let throttle = |p: &Point| {
-            if bench.kind == Kind::Pair {
+            if bench.kind == BenchKind::Pair {
                 0.5 * (p.u + p.l)
             } else {
                 p.u
@@ -276,7 +276,7 @@ impl<'a> Run<'a> {
     }
 
     fn pair(&self) -> Option<&Self> {
-        (self.bench.kind == Kind::Pair).then_some(self)
+        (self.bench.kind == BenchKind::Pair).then_some(self)
     }
 
     fn of(&self, value: fn(&Point) -> f64) -> Vec<f64> {
@@ -290,7 +290,7 @@ impl<'a> Run<'a> {
     /// A number of one rotor and the diameter of its propeller, at its greatest throttle.
     fn single(&self, value: fn(&Point, f64) -> f64) -> Option<[f64; 2]> {
         let fastest = self.points.iter().max_by(|a, b| a.u.total_cmp(&b.u));
-        let fastest = fastest.filter(|_| self.bench.kind == Kind::SingleRotor);
+        let fastest = fastest.filter(|_| self.bench.kind == BenchKind::SingleRotor);
         exact(value(fastest?, self.diameter_m?))
     }
 

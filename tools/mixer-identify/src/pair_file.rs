@@ -1,6 +1,6 @@
 //! A file with the model of a pair: what `identify` and `predict` write, or a whole airframe's.
 
-use mixer_compiler::diagnostic::kind::{self, Kind};
+use mixer_compiler::diagnostic::content::{self, Content};
 use toml_edit::{DocumentMut, Item};
 
 use super::fragment::POWER_BIAS;
@@ -18,8 +18,8 @@ impl PairFile {
     /// # Errors
     /// A text that is no TOML, has no `[pair]` or several.
     pub fn read(name: &str, text: &str) -> Result<PairFile, String> {
-        let document: DocumentMut = text.parse().map_err(|error| match kind::of(text) {
-            Kind::Airframe | Kind::Pair => format!("{name}: {error}"),
+        let document: DocumentMut = text.parse().map_err(|error| match content::of(text) {
+            Content::Airframe | Content::Pair => format!("{name}: {error}"),
             other => format!("{name}: this is {}, with -o pair.toml for --pair", other.told()),
         })?;
         if !document.contains_key("pair") {

@@ -1,18 +1,18 @@
-//! The report on standard output, at most 100 columns wide: facts, and what the user should know.
+//! The report on standard output, at most 100 columns wide: statements, and what the user should know.
 
 use mixer_compiler::diagnostic::wrapped;
 
-use super::fact::{Detail, Fact, of_identified, of_predicted};
 use super::fit::Fit;
 use super::fit::cross::Candidate;
 use super::fit::pair::Pair;
 use super::identified::Identified;
 use super::rotor::predict::Predicted;
+use super::statement::{Detail, Statement, of_identified, of_predicted};
 
 /// Lines of the short report, at most; the command adds what it wrote and what comes next.
 pub const MOST_LINES: usize = 27;
 
-/// Column at which the text of a fact begins.
+/// Column at which the text of a statement begins.
 const INDENT: usize = 16;
 
 /// Columns of a line.
@@ -20,15 +20,19 @@ const WIDTH: usize = 100;
 
 /// What serves to judge a map, in at most [`MOST_LINES`] lines.
 pub fn verdict(identified: &Identified) -> String {
-    let facts = of_identified(identified);
-    let mut lines = facts_in_lines(facts.iter().filter(|fact| fact.told != Detail::Long));
+    let statements = of_identified(identified);
+    let mut lines = statements_in_lines(
+        statements
+            .iter()
+            .filter(|statement| statement.told != Detail::Long),
+    );
     warnings(&mut lines, &doubts(identified), MOST_LINES);
     lines.join("\n")
 }
 
 /// Every number.
 pub fn text(identified: &Identified) -> String {
-    let mut lines = facts_in_lines(&of_identified(identified));
+    let mut lines = statements_in_lines(&of_identified(identified));
     if let Some(pair) = &identified.pair {
         bases(&mut lines, &pair.cross_validation);
         coefficients(&mut lines, pair);
@@ -40,7 +44,7 @@ pub fn text(identified: &Identified) -> String {
 /// What was predicted, from what, how far to trust it.
 pub fn of_prediction(predicted: &Predicted) -> String {
     let mut lines = vec!["Predicted from ONE rotor alone, not measured".to_owned()];
-    lines.extend(facts_in_lines(&of_predicted(predicted)));
+    lines.extend(statements_in_lines(&of_predicted(predicted)));
     let told: Vec<&str> = predicted.warnings.iter().map(String::as_str).collect();
     warnings(&mut lines, &told, usize::MAX);
     lines.join("\n") + "\n"
@@ -58,13 +62,21 @@ fn doubts(identified: &Identified) -> Vec<&str> {
 }
 
 /// Names in a column of their own, each once.
-fn facts_in_lines<'a>(facts: impl IntoIterator<Item = &'a Fact>) -> Vec<String> {
+fn statements_in_lines<'a>(statements: impl IntoIterator<Item = &'a Statement>) -> Vec<String> {
     let mut lines = Vec::new();
     let mut before = "";
-    for fact in facts {
-        let mut name = if fact.name == before { "" } else { fact.name };
-        before = if fact.name.is_empty() { before } else { fact.name };
-        for line in wrapped(&fact.text, WIDTH - INDENT) {
+    for statement in statements {
+        let mut name = if statement.name == before {
+            ""
+        } else {
+            statement.name
+        };
+        before = if statement.name.is_empty() {
+            before
+        } else {
+            statement.name
+        };
+        for line in wrapped(&statement.text, WIDTH - INDENT) {
             lines.push(format!("{name:<INDENT$}{line}"));
             name = "";
         }

@@ -4,7 +4,7 @@ use mixer_compiler::atmosphere::altitude_of;
 use mixer_compiler::model::PairMap;
 
 use super::air::{Air, THIN_M};
-use super::bench::{Bench, Kind};
+use super::bench::{Bench, BenchKind};
 use super::fit::Fit;
 use super::fit::pair::Pair;
 use super::fit::pair::drift::Shown;
@@ -15,7 +15,7 @@ use super::rotor::predict::Predicted;
 use super::rotor::single::exponents_told;
 use super::rotor::{Alone, Turning};
 
-/// Where a fact is told.
+/// Where a statement is told.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Detail {
     /// In every report and in the tables.
@@ -28,7 +28,7 @@ pub enum Detail {
 
 /// One of them.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Fact {
+pub struct Statement {
     /// The table that it is about, as `pair.power`; empty for the whole file.
     pub table: &'static str,
     /// What it is; empty where it goes on with the one before.
@@ -41,15 +41,15 @@ pub struct Fact {
 
 /// A list in the making, of one table at a time.
 #[derive(Default)]
-struct Facts {
+struct Statements {
     table: &'static str,
-    all: Vec<Fact>,
+    all: Vec<Statement>,
 }
 
-impl Facts {
+impl Statements {
     fn add(&mut self, told: Detail, name: &'static str, text: impl Into<String>) {
         let (table, text) = (self.table, text.into());
-        self.all.push(Fact {
+        self.all.push(Statement {
             table,
             name,
             text,
@@ -74,44 +74,48 @@ const SAG: f64 = 0.01;
 const MOST_FILES: usize = 4;
 
 /// What was identified.
-pub fn of_identified(identified: &Identified) -> Vec<Fact> {
-    let mut facts = Facts::default();
+pub fn of_identified(identified: &Identified) -> Vec<Statement> {
+    let mut statements = Statements::default();
     for (k, file) in identified.files.iter().enumerate() {
         let told = if k < MOST_FILES {
             Detail::Always
         } else {
             Detail::Long
         };
-        facts.add(told, "read", format!("{}: {}", file.file, provenance(file)));
-        facts.more(signs(file));
-        file.tare.iter().for_each(|tare| facts.add(told, "tare", tare));
+        statements.add(told, "read", format!("{}: {}", file.file, provenance(file)));
+        statements.more(signs(file));
+        file.tare
+            .iter()
+            .for_each(|tare| statements.add(told, "tare", tare));
     }
     let more = identified.files.len().saturating_sub(MOST_FILES);
     if more > 0 {
-        facts.add(Detail::Reported, "read", format!("and {more} files more"));
+        statements.add(Detail::Reported, "read", format!("and {more} files more"));
     }
     if let Some(pair) = &identified.pair {
-        of_pair(&mut facts, pair);
+        of_pair(&mut statements, pair);
     }
-    facts.table = "voltage";
+    statements.table = "voltage";
     match &identified.voltage {
-        Some(voltage) => of_voltage(&mut facts, voltage),
-        None if identified.closed_loop => facts.always("voltage", "no matter: the controllers hold a speed"),
-        None => facts.always("voltage", "not corrected for: no file has a voltage column"),
+        Some(voltage) => of_voltage(&mut statements, voltage),
+        None if identified.closed_loop => {
+            statements.always("voltage", "no matter: the controllers hold a speed")
+        }
+        None => statements.always("voltage", "not corrected for: no file has a voltage column"),
     }
-    of_air(&mut facts, &identified.air);
-    facts.table = "pair.power";
+    of_air(&mut statements, &identified.air);
+    statements.table = "pair.power";
     match &identified.power {
-        Some(Power::Identified(found)) => of_power(&mut facts, found),
-        Some(Power::Refused { reason }) => facts.always("least power", format!("none: {reason}")),
+        Some(Power::Identified(found)) => of_power(&mut statements, found),
+        Some(Power::Refused { reason }) => statements.always("least power", format!("none: {reason}")),
         None => {}
     }
-    facts.all
+    statements.all
 }
 
 /// One line on a file: format, rows.
 fn provenance(file: &Bench) -> String {
-    let kind = ["", ", single rotor"][usize::from(file.kind == Kind::SingleRotor)];
+    let kind = ["", ", single rotor"][usize::from(file.kind == BenchKind::SingleRotor)];
     let refused = file.refused_rows.len();
     let used = file
         .rows
@@ -139,14 +143,14 @@ fn signs(file: &Bench) -> String {
     format!("signs applied: {thrust}{torque}")
 }
 
-fn of_pair(facts: &mut Facts, pair: &Pair) {
+fn of_pair(statements: &mut Statements, pair: &Pair) {
     let (min, max) = (pair.throttle.min, pair.throttle.max);
     let map = PairMap::of(pair.basis, &pair.thrust_n, &pair.torque_nm, [min, max]);
     let [floor, full] = [min, max].map(|t| map.efforts([t, t])[0]);
     let [least, most] = [[max, min], [min, max]].map(|t| map.efforts(t)[1]);
-    facts.table = "throttle";
+    statements.table = "throttle";
     let text = format!("{floor:.1} to {full:.1} N of one pair; torque {least:+.3} N m to {most:+.3} N m");
-    facts.always("thrust", text);
+    statements.always("thrust", text);
     let fold = match pair.fold.least_idle {
         _ if pair.fold.injective => "the map has no fold".to_owned(),
         Some(least) => format!("the map folds below {least:.4}"),
@@ -154,20 +158,20 @@ fn of_pair(facts: &mut Facts, pair: &Pair) {
     };
     let idle = 100.0 * floor / full;
     let text = format!("{min} to {max}; at idle {idle:.1} % of the largest thrust; {fold}");
-    facts.always("throttle", text);
+    statements.always("throttle", text);
     let (least, [u, l]) = (pair.fold.least_det, pair.fold.least_det_at);
     let proven = if pair.fold.folds { "" } else { ", proven > 0" };
-    facts.more(format!(
+    statements.more(format!(
         "the least det J is {least:.4}, at ({u:.3}, {l:.3}){proven}"
     ));
     for region in &pair.fold.regions {
         let ([ua, ub], [la, lb]) = (region.u, region.l);
-        facts.more(format!(
+        statements.more(format!(
             "det J <= 0 within u {ua:.3} .. {ub:.3}, l {la:.3} .. {lb:.3}"
         ));
     }
 
-    facts.table = "pair";
+    statements.table = "pair";
     let (thrust, torque) = (&pair.thrust, &pair.torque);
     let (basis, left_out) = (pair.basis.name(), "of the largest torque at");
     let [f, q] = [thrust, torque].map(|fit| 100.0 * fit.leave_one_out_rms / fit.full_scale);
@@ -175,7 +179,7 @@ fn of_pair(facts: &mut Facts, pair: &Pair) {
         Some((f, q)) => format!("{f} % of the largest thrust and {q} % {left_out} throttles left out"),
         None => format!("{f:.1} % of the largest thrust and {q:.1} % {left_out} rows left out"),
     };
-    facts.always("model error", format!("{errors}; {basis} basis"));
+    statements.always("model error", format!("{errors}; {basis} basis"));
     let standing_out = match (pair.outliers.len(), pair.outliers_left_out) {
         (0, _) => "no row stands out".to_owned(),
         (count, true) => format!("{count} rows stand out and are left out"),
@@ -184,8 +188,8 @@ fn of_pair(facts: &mut Facts, pair: &Pair) {
     let [(f, of_f), (q, of_q)] =
         [thrust, torque].map(|fit| (fit.residual_max, 100.0 * fit.residual_max / fit.full_scale));
     let text = format!("{f:.2} N ({of_f:.1} %) and {q:.4} N m ({of_q:.1} %) off; {standing_out}");
-    facts.always("worst row", text);
-    of_drift(facts, pair);
+    statements.always("worst row", text);
+    of_drift(statements, pair);
     for o in &pair.outliers {
         let (f, of_f) = (o.thrust_residual, o.thrust_deviations);
         let (q, of_q) = (o.torque_residual, o.torque_deviations);
@@ -193,30 +197,30 @@ fn of_pair(facts: &mut Facts, pair: &Pair) {
             "{}:{} at ({:.3}, {:.3}): thrust {f:+.3} N ({of_f:+.0} sigma), torque {q:+.4} N m ({of_q:+.0} sigma)",
             o.file, o.line, o.u, o.l
         );
-        facts.more(text);
+        statements.more(text);
     }
-    facts.add(Detail::Long, "fit of thrust", of_fit(thrust, "N"));
-    facts.add(Detail::Long, "fit of torque", of_fit(torque, "N m"));
+    statements.add(Detail::Long, "fit of thrust", of_fit(thrust, "N"));
+    statements.add(Detail::Long, "fit of torque", of_fit(torque, "N m"));
     let [u, l] = thrust.prediction.greatest_at;
     let text = format!(
         "{} points, {} degrees of freedom, condition number {:.1}; prediction widest at ({u:.2}, {l:.2})",
         thrust.points, thrust.degrees_of_freedom, thrust.condition_number
     );
-    facts.more(text);
+    statements.more(text);
     if let Some(volts) = pair.normalised_to_v {
-        facts.more(format!(
+        statements.more(format!(
             "all points are brought to {volts} V by the exponents of voltage"
         ));
     }
     if runs(pair).next().is_none() {
         let text = "by the map, extrapolated to a throttle of 0 (--lower-out, --upper-out take runs)";
-        facts.add(Detail::Reported, "rotor out", text);
+        statements.add(Detail::Reported, "rotor out", text);
     }
-    runs(pair).for_each(|(turning, alone)| of_alone(facts, turning, alone));
+    runs(pair).for_each(|(turning, alone)| of_alone(statements, turning, alone));
 }
 
 /// Drifts by the order of the rows, or that it shows none.
-fn of_drift(facts: &mut Facts, pair: &Pair) {
+fn of_drift(statements: &mut Statements, pair: &Pair) {
     let wholes = pair
         .drift
         .iter()
@@ -231,7 +235,7 @@ fn of_drift(facts: &mut Facts, pair: &Pair) {
         } else {
             "none"
         };
-        facts.always(
+        statements.always(
             "drift",
             format!("{what} in the order of the rows: {}", told.join(", ")),
         );
@@ -246,7 +250,7 @@ fn of_drift(facts: &mut Facts, pair: &Pair) {
         };
         let text =
             "cannot be told from throttle in the order of the rows; cargo mixer plan draws one that shows it";
-        facts.always("drift", of + text);
+        statements.always("drift", of + text);
     }
 }
 
@@ -275,14 +279,14 @@ pub fn runs(pair: &Pair) -> impl Iterator<Item = (Turning, &Alone)> {
     both.filter_map(|(turning, alone)| Some((turning, alone.as_ref()?)))
 }
 
-fn of_alone(facts: &mut Facts, turning: Turning, alone: &Alone) {
-    facts.table = turning.table();
+fn of_alone(statements: &mut Statements, turning: Turning, alone: &Alone) {
+    statements.table = turning.table();
     let (table, [from, to]) = (turning.table(), alone.measured);
     let text = format!(
         "[{table}] from {}: {} points, throttle {from:.2} to {to:.2}",
         alone.file, alone.points
     );
-    facts.always("rotor out", text);
+    statements.always("rotor out", text);
     for (name, unit, [a1, a2, a3], fit) in [
         ("thrust", "N", alone.thrust_n, &alone.thrust),
         ("torque", "N m", alone.torque_nm, &alone.torque),
@@ -293,11 +297,11 @@ fn of_alone(facts: &mut Facts, turning: Turning, alone: &Alone) {
             "{name} {a1:.5} x {a2:+.5} x2 {a3:+.5} x3 {unit}: leave-one-out {own:.2} % of {full:.4} {unit}; the pair's \
              polynomial at zero misses this run by {pair:.2} %"
         );
-        facts.more(text);
+        statements.more(text);
     }
 }
 
-fn of_voltage(facts: &mut Facts, voltage: &Voltage) {
+fn of_voltage(statements: &mut Statements, voltage: &Voltage) {
     let channels = voltage.channels();
     let one = channels.len() == 1;
     for (name, exponent) in channels {
@@ -314,13 +318,13 @@ fn of_voltage(facts: &mut Facts, voltage: &Voltage) {
             ),
         };
         let text = if one { told } else { format!("{name} {told}") };
-        facts.always("voltage", text);
+        statements.always("voltage", text);
         if !more.is_empty() {
-            facts.more(format!("needed: {more}"));
+            statements.more(format!("needed: {more}"));
         }
     }
     let ([low, high], mean) = (voltage.range_v, voltage.mean_v);
-    facts.more(format!("rows of {low:.2} to {high:.2} V, mean {mean:.2} V"));
+    statements.more(format!("rows of {low:.2} to {high:.2} V, mean {mean:.2} V"));
 }
 
 fn of_estimate(e: &Estimate) -> String {
@@ -340,7 +344,7 @@ fn of_estimate(e: &Estimate) -> String {
     format!("exponent {exponent:.3} +- {ci95:.3} (95 %), by {method}{levels}{quartiles}{halves}")
 }
 
-fn of_power(facts: &mut Facts, found: &LeastPower) {
+fn of_power(statements: &mut Statements, found: &LeastPower) {
     let (bias, saving, at) = (
         found.bias_nm_per_n,
         found.saving_percent,
@@ -351,13 +355,13 @@ fn of_power(facts: &mut Facts, found: &LeastPower) {
          {:.1} W at {:.2} N",
         at.least_power_w, at.power_w, at.thrust_n
     );
-    facts.always("least power", text);
+    statements.always("least power", text);
     let longer = 100.0 * (1.0 / (1.0 - 0.01 * saving) - 1.0);
     let text = format!(
         "that is {longer:.1} % of flight time where as many upper rotors turn one way as the other; with spins s of n units \
          1 - (sum s / n)^2 of it is left, none where all turn alike (a Y6)"
     );
-    facts.more(text);
+    statements.more(text);
     let (points, rms) = (found.points, found.residual_rms_w);
     let share = 100.0 * rms / found.full_scale_w;
     let refused = match found.power_w {
@@ -367,15 +371,15 @@ fn of_power(facts: &mut Facts, found: &LeastPower) {
     let text = format!(
         "power map of {points} rows: residual {rms:.2} W rms, {share:.2} % of the greatest power{refused}"
     );
-    facts.more(text);
+    statements.more(text);
 }
 
 /// The air, where it is known.
-fn of_air(facts: &mut Facts, air: &Air) {
+fn of_air(statements: &mut Statements, air: &Air) {
     let Some((density, [low, high])) = air.density_kg_m3.zip(air.range_kg_m3) else {
         return;
     };
-    facts.table = "air";
+    statements.table = "air";
     let brought = match high - low > 1e-3 {
         true => format!(
             "; rows of {low:.3} to {high:.3} kg/m3 are brought to it by {}",
@@ -388,15 +392,15 @@ fn of_air(facts: &mut Facts, air: &Air) {
         true => format!(" (density altitude {altitude_m:.0} m)"),
         false => String::new(),
     };
-    facts.always(
+    statements.always(
         "air",
         format!("{density:.3} kg/m3{thin}, of {}{brought}", air.from),
     );
 }
 
 /// What was predicted.
-pub fn of_predicted(predicted: &Predicted) -> Vec<Fact> {
-    let mut facts = Facts::default();
+pub fn of_predicted(predicted: &Predicted) -> Vec<Statement> {
+    let mut statements = Statements::default();
     for run in &predicted.runs {
         let (file, points, [from, to]) = (&run.file, run.points, run.measured);
         let volts = match (run.range_v, run.voltage_v) {
@@ -410,16 +414,16 @@ pub fn of_predicted(predicted: &Predicted) -> Vec<Fact> {
             (_, None) => String::new(),
         };
         let text = format!("{file}: {points} points of one rotor, throttle {from:.2} to {to:.2}{volts}");
-        facts.always("from", text);
+        statements.always("from", text);
     }
     for (file, rows) in &predicted.corrected_by {
-        facts.always("corrected by", format!("{rows} rows of the pair in {file}"));
+        statements.always("corrected by", format!("{rows} rows of the pair in {file}"));
     }
     let (ratio, [b, m0, m1, n, a, limit]) = (predicted.spacing_ratio, predicted.constants);
     let text = format!("{ratio:.3}; constants B {b}, m0 {m0}, m1 {m1}, n {n}, a {a}, b {limit}");
-    facts.always("z/D", text);
-    of_air(&mut facts, &predicted.air);
-    facts.table = "";
+    statements.always("z/D", text);
+    of_air(&mut statements, &predicted.air);
+    statements.table = "";
     let pair = &predicted.pair;
     let (f, q) = (pair.uncertainty.thrust_percent, pair.uncertainty.torque_percent);
     let text = format!(
@@ -427,12 +431,12 @@ pub fn of_predicted(predicted: &Predicted) -> Vec<Fact> {
          against each other, z/D 0.1 to 1; not for ducts, co-rotating or blocked rotors. In the first hover compare the \
          thrust asked with the weight; docs/no-bench.md goes on from there."
     );
-    facts.always("to trust", text);
-    facts.table = "throttle";
+    statements.always("to trust", text);
+    statements.table = "throttle";
     let (min, max, [f, q]) = (pair.throttle.min, pair.throttle.max, pair.misfit_percent);
     let text = format!(
         "{min} to {max}; the cubic misses the model by {f:.2} % of thrust and {q:.2} % of torque, rms"
     );
-    facts.always("throttle", text);
-    facts.all
+    statements.always("throttle", text);
+    statements.all
 }

@@ -1,6 +1,6 @@
 //! Text in, text out: what a front end calls, be it the command line, a page or a notebook.
 
-use mixer_compiler::diagnostic::kind::{self, Kind};
+use mixer_compiler::diagnostic::content::{self, Content};
 use serde::Serialize;
 
 use super::air::Air;
@@ -24,7 +24,7 @@ pub struct Text {
 
 /// What came of files.
 #[derive(Debug, Clone)]
-pub struct Answer<T> {
+pub struct Outcome<T> {
     /// In numbers.
     pub found: T,
     /// The report in at most 30 lines of 100 columns.
@@ -37,10 +37,10 @@ pub struct Answer<T> {
     pub json: String,
 }
 
-impl<T> Answer<T> {
+impl<T> Outcome<T> {
     /// Its texts alone.
-    pub fn texts(self) -> Answer<()> {
-        Answer {
+    pub fn texts(self) -> Outcome<()> {
+        Outcome {
             found: (),
             report: self.report,
             details: self.details,
@@ -63,8 +63,8 @@ pub fn read(text: &Text, settings: &Settings) -> Result<Bench, Refusal> {
 
 /// The refusal of a file that was meant for another command; `None` of a table and of what nothing is known of.
 fn of_another_kind(name: &str, bytes: &[u8]) -> Option<Refusal> {
-    let kind = kind::of(&normalised(name, bytes).ok()?);
-    let is_table = matches!(kind, Kind::Table | Kind::Other);
+    let kind = content::of(&normalised(name, bytes).ok()?);
+    let is_table = matches!(kind, Content::Table | Content::Other);
     let needed = "the table with the measurements as CSV";
     (!is_table).then(|| Refusal::of(name, format!("this is {}", kind.told()), needed))
 }
@@ -103,7 +103,7 @@ pub fn identify(
     maps: &[Text],
     runs: [Option<&Text>; 2],
     settings: &Settings,
-) -> Result<Answer<Identified>, Vec<Refusal>> {
+) -> Result<Outcome<Identified>, Vec<Refusal>> {
     let benches = read_all(maps, settings)?;
     let run = |run: Option<&Text>| run.map(|run| read(run, settings)).transpose();
     let [upper, lower] = runs;
@@ -114,7 +114,7 @@ pub fn identify(
     });
     let mut found = found.map_err(|refusal| vec![refusal])?;
     found.options.clone_from(&settings.options);
-    Ok(Answer {
+    Ok(Outcome {
         report: report::verdict(&found),
         details: report::text(&found),
         tables: fragment::text(&found),
@@ -146,7 +146,7 @@ pub fn predict(
     lower: Option<&Text>,
     maps: &[Text],
     how: &Prediction,
-) -> Result<Answer<Predicted>, Vec<Refusal>> {
+) -> Result<Outcome<Predicted>, Vec<Refusal>> {
     let mut maps = read_all(maps, &how.map)?;
     let run = |text: &Text| read(text, &how.run).map_err(|refusal| vec![refusal]);
     let (mut upper, mut lower) = (run(upper)?, lower.map(run).transpose()?);
@@ -167,7 +167,7 @@ pub fn predict(
     let mut found = found.map_err(|refusal| vec![refusal])?;
     found.options.clone_from(&how.map.options);
     let report = report::of_prediction(&found);
-    Ok(Answer {
+    Ok(Outcome {
         details: report.clone(),
         report,
         tables: fragment::of_prediction(&found),

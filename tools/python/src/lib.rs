@@ -30,7 +30,7 @@ mod _native {
     use mixer_compiler::{Compiled, Source};
     use mixer_facts::Checked;
     use mixer_identify::refusal::Refusal;
-    use mixer_identify::texts::Answer;
+    use mixer_identify::texts::Outcome;
     use mixer_rt::Health;
     use numpy::ndarray::{Array1, ArrayView1, IntoDimension, Ix2, Ix3};
     use numpy::{Element, PyArray, PyArray1, PyArrayMethods as _, PyReadonlyArray1, PyReadonlyArray2};
@@ -202,7 +202,7 @@ mod _native {
         error(told.join("\n"))
     }
 
-    fn texts<T>(answer: Answer<T>, frame: Option<&FrameArgs>, notes: Vec<String>) -> Texts {
+    fn texts<T>(answer: Outcome<T>, frame: Option<&FrameArgs>, notes: Vec<String>) -> Texts {
         let tables = tables_or_airframe(&answer, frame, None).map_err(error)?;
         Ok((tables, answer.report, answer.details, answer.json, notes))
     }

@@ -16,7 +16,7 @@ use mixer_files::kind::File;
 use mixer_identify::bench::read;
 use mixer_identify::identified::Settings;
 use mixer_identify::refusal::Refusal;
-use mixer_identify::texts::{Answer, Text};
+use mixer_identify::texts::{Outcome, Text};
 use serde::Serialize;
 
 /// The commands, with the arguments that they have on the command line.
@@ -183,7 +183,7 @@ pub fn make(words: &[String], files: &Files) -> Result<Made, Vec<Fault>> {
 }
 
 /// `notes` are of rows that were passed over; the answer has its own warnings.
-fn answered<T>(command: &str, toml: String, answer: &Answer<T>, notes: Vec<String>) -> Made {
+fn answered<T>(command: &str, toml: String, answer: &Outcome<T>, notes: Vec<String>) -> Made {
     let json: serde_json::Value = serde_json::from_str(&answer.json).unwrap_or_default();
     let warnings = json["warnings"].as_array().into_iter().flatten();
     let warnings = warnings.filter_map(|warning| warning.as_str().map(str::to_owned));

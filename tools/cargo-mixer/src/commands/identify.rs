@@ -13,7 +13,7 @@ use mixer_identify::fit::basis::ThrottleBox;
 use mixer_identify::fit::wishes::FitOptions;
 use mixer_identify::identified::Settings;
 use mixer_identify::refusal::Refusal;
-use mixer_identify::texts::{Answer, Prediction, identify};
+use mixer_identify::texts::{Outcome, Prediction, identify};
 
 use crate::bench_args::{AirArgs, ReadingArgs, exponents, of, throttle_box};
 use crate::bench_files::{self, Reader};
@@ -141,7 +141,7 @@ impl IdentifyArgs {
     ///
     /// # Errors
     /// Arguments that do not fit together, files that cannot serve.
-    pub fn answer(&self, reader: Reader<'_>) -> Result<(Answer<()>, Vec<String>), NoAnswer> {
+    pub fn answer(&self, reader: Reader<'_>) -> Result<(Outcome<()>, Vec<String>), NoAnswer> {
         if self.prior.is_none() && self.rotors.is_given() {
             let message =
                 "what is known of one rotor alone belongs to --prior SINGLE.csv, which is not given";

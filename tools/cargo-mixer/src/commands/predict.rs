@@ -14,7 +14,7 @@ use mixer_identify::identified::Settings;
 use mixer_identify::refusal::Refusal;
 use mixer_identify::rotor::predict::{PredictOptions, Predicted};
 use mixer_identify::rotor::single;
-use mixer_identify::texts::{self, Answer, Prediction, Text};
+use mixer_identify::texts::{self, Outcome, Prediction, Text};
 
 use crate::Done;
 use crate::bench_args;
@@ -143,7 +143,7 @@ impl RotorArgs {
         maps: &[Text],
         how: &Prediction,
         reader: Reader<'_>,
-    ) -> Result<Answer<Predicted>, Vec<Refusal>> {
+    ) -> Result<Outcome<Predicted>, Vec<Refusal>> {
         let lower = self.lower_single.as_deref().map(reader);
         texts::predict(single, lower.as_ref(), maps, how)
     }
@@ -168,7 +168,7 @@ impl PredictArgs {
     ///
     /// # Errors
     /// Files that cannot serve.
-    pub fn answer(&self, reader: Reader<'_>) -> Result<Answer<Predicted>, Vec<Refusal>> {
+    pub fn answer(&self, reader: Reader<'_>) -> Result<Outcome<Predicted>, Vec<Refusal>> {
         let held = self.reading.rpm_at_full.is_some();
         let exponents = exponents(self.voltage_exponent, held);
         let how = Prediction {

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 
 use mixer_compiler::Compiled;
 use mixer_compiler::airframe::{Airframe, Spin};
-use mixer_compiler::diagnostic::kind::{self, Kind};
+use mixer_compiler::diagnostic::content::{self, Content};
 
 use super::{Import, Options, import};
 use crate::params::{self, Stack, params};
@@ -673,9 +673,9 @@ fn files_as_people_have_them() {
 
 /// The stack of a file.
 fn stack(text: &str) -> Stack {
-    match kind::of(text) {
-        Kind::Ardupilot => Stack::Ardupilot,
-        Kind::Betaflight => Stack::Betaflight,
+    match content::of(text) {
+        Content::Ardupilot => Stack::Ardupilot,
+        Content::Betaflight => Stack::Betaflight,
         _ => Stack::Px4,
     }
 }

@@ -11,7 +11,7 @@ use isolated_rotors::IsolatedTables;
 
 /// What one mixer makes of one yaw command.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Answer {
+pub struct YawResponse {
     /// Throttles `[u, l]` of every unit.
     pub throttles: Vec<[f64; 2]>,
     /// Thrust and torque `[f (N), Q (N m)]` that these throttles give by the pair's map, per unit.
@@ -28,9 +28,9 @@ pub struct Row {
     /// Yaw asked, N m.
     pub yaw_nm: f64,
     /// The compiled mixer.
-    pub coaxial: Answer,
+    pub coaxial: YawResponse,
     /// The conventional mixer.
-    pub conventional: Answer,
+    pub conventional: YawResponse,
 }
 
 /// The whole sweep.
@@ -101,9 +101,9 @@ pub fn throttles(
     (study.by_unit(&channels), within)
 }
 
-fn answer(study: &Study<'_>, (throttles, within): (Vec<[f64; 2]>, bool)) -> Answer {
+fn answer(study: &Study<'_>, (throttles, within): (Vec<[f64; 2]>, bool)) -> YawResponse {
     let efforts: Vec<[f64; 2]> = study.efforts_of(&throttles);
-    Answer {
+    YawResponse {
         wrench: study.wrench(&efforts),
         throttles,
         efforts,

@@ -4,7 +4,7 @@
 use mixer_compiler::airframe::Axis;
 
 use crate::report::authority::Authority;
-use crate::report::comparison::{Answer, Comparison, Row};
+use crate::report::comparison::{Comparison, Row, YawResponse};
 use crate::report::effort::EFFORTS;
 use crate::report::figure::Figure;
 use crate::report::level::Level;
@@ -41,7 +41,7 @@ fn of_voltage(voltage_v: Option<f64>, index: usize) -> &'static str {
 }
 
 /// Names and classes of the two mixers, with how to get at their answers.
-type Mixer = (&'static str, &'static str, fn(&Row) -> &Answer);
+type Mixer = (&'static str, &'static str, fn(&Row) -> &YawResponse);
 const MIXERS: [Mixer; 2] = [
     ("coaxial mixer", "series-1", |row| &row.coaxial),
     ("conventional mixer", "series-2", |row| &row.conventional),
@@ -123,7 +123,7 @@ pub fn yaw_thrust(comparison: &Comparison) -> Figure {
 
 /// Curves of unit thrust that differ, each with the units that share it: symmetric units lie on one
 /// another.
-fn distinct(comparison: &Comparison, answer: fn(&Row) -> &Answer) -> Vec<(Vec<[f64; 2]>, Vec<usize>)> {
+fn distinct(comparison: &Comparison, answer: fn(&Row) -> &YawResponse) -> Vec<(Vec<[f64; 2]>, Vec<usize>)> {
     let mut curves: Vec<(Vec<[f64; 2]>, Vec<usize>)> = Vec::new();
     for unit in 0..comparison.share_n.len() {
         let of = |row: &Row| [row.yaw_nm, answer(row).efforts[unit][0]];
@@ -158,7 +158,7 @@ pub fn yaw_total(comparison: &Comparison) -> Figure {
 /// How far the yaw that is really given is off the yaw asked.
 pub fn yaw_error(comparison: &Comparison) -> Figure {
     let (title, label) = ("Yaw given less yaw asked", "yaw given \u{2212} asked (N m)");
-    let off = |row: &Row, answer: &Answer| answer.wrench[2] - row.yaw_nm;
+    let off = |row: &Row, answer: &YawResponse| answer.wrench[2] - row.yaw_nm;
     of_both(comparison, title, label, ("", 0.0), off)
 }
 
@@ -168,9 +168,9 @@ fn of_both(
     title: &str,
     label: &str,
     (name, level): (&str, f64),
-    value: impl Fn(&Row, &Answer) -> f64,
+    value: impl Fn(&Row, &YawResponse) -> f64,
 ) -> Figure {
-    let curve = |answer: fn(&Row) -> &Answer| -> Vec<[f64; 2]> {
+    let curve = |answer: fn(&Row) -> &YawResponse| -> Vec<[f64; 2]> {
         let of = |row: &Row| [row.yaw_nm, value(row, answer(row))];
         comparison.rows.iter().map(of).collect()
     };

@@ -6,7 +6,7 @@ use mixer_compiler::diagnostic::printable;
 use mixer_facts::Fact;
 
 use crate::report::bench::BenchPoints;
-use crate::report::comparison::{Answer, Comparison};
+use crate::report::comparison::{Comparison, YawResponse};
 use crate::report::effort::Effort;
 use crate::report::number::{fixed, range, shortest, significant};
 use crate::report::rows::table;
@@ -150,7 +150,7 @@ pub fn comparison(comparison: &Comparison) -> Markup {
     let mut lines = Vec::new();
     for row in (0..shown).filter_map(|k| comparison.rows.get(k * count.saturating_sub(1) / (shown - 1))) {
         for (name, answer) in [("coaxial", &row.coaxial), ("conventional", &row.conventional)] {
-            let Answer { efforts, wrench, .. } = answer;
+            let YawResponse { efforts, wrench, .. } = answer;
             let limited = if answer.within { "" } else { "*" };
             let mut cells = vec![fixed(row.yaw_nm, 3), format!("{name}{limited}")];
             cells.extend(groups.iter().flat_map(|group| rounded(efforts[group[0]])));

@@ -4,7 +4,7 @@
 //! byte-order mark; "Unicode text" of spreadsheets is UTF-16. A line that is not UTF-8 is Latin-1, in
 //! which every byte is a character. Blanks and signs that spreadsheets put into numbers become ASCII.
 
-use mixer_compiler::diagnostic::kind::foreign;
+use mixer_compiler::diagnostic::content::foreign;
 use mixer_compiler::diagnostic::utf16;
 
 use crate::refusal::Refusal;

@@ -13,7 +13,7 @@
 
 use mixer_compiler::airframe::Basis;
 
-use crate::bench::{Bench, Kind, Point};
+use crate::bench::{Bench, BenchKind, Point};
 use crate::fit::Design;
 use crate::fit::polynomial::Polynomial;
 
@@ -25,7 +25,7 @@ const CHANNELS: [Channel; 3] = [|p| &mut p.thrust, |p| &mut p.torque, |p| &mut p
 #[must_use]
 pub fn balanced(bench: &Bench) -> Bench {
     let mut bench = bench.clone();
-    if bench.kind == Kind::Pair && bench.points.iter().any(|p| p.imbalance != 0.0) {
+    if bench.kind == BenchKind::Pair && bench.points.iter().any(|p| p.imbalance != 0.0) {
         for channel in CHANNELS {
             bring(&mut bench.points, channel);
         }

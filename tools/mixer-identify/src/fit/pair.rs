@@ -7,7 +7,7 @@ use serde::Serialize;
 use self::drift::Shown;
 use self::placed::{Placed, at_reference, channels, confirmed, places, suspects, without};
 use crate::bench::sign::AUTO;
-use crate::bench::{Bench, Kind, mean_voltage};
+use crate::bench::{Bench, BenchKind, mean_voltage};
 use crate::fit::basis::ThrottleBox;
 use crate::fit::cross::{self, Candidate};
 use crate::fit::fold::{self, Fold};
@@ -72,7 +72,7 @@ pub struct Pair {
     pub warnings: Vec<String>,
 }
 
-/// Identifies the pair that the benches of [`Kind::Pair`] describe.
+/// Identifies the pair that the benches of [`BenchKind::Pair`] describe.
 ///
 /// `told` are the numbers of the files that are outside; of their shape a drift is the better reason.
 ///
@@ -84,7 +84,7 @@ pub(crate) fn identify(
     wishes: &FitOptions,
     told: &[Told],
 ) -> Result<Pair, Refusal> {
-    let benches: Vec<&Bench> = benches.iter().filter(|b| b.kind == Kind::Pair).collect();
+    let benches: Vec<&Bench> = benches.iter().filter(|b| b.kind == BenchKind::Pair).collect();
     let files = names(&benches);
     let mut warnings = Vec::new();
     let (mut points, normalised_to_v) = at_reference(&benches, voltage, wishes)?;

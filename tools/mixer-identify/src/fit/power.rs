@@ -14,7 +14,7 @@ use mixer_compiler::airframe::{self, Basis};
 use mixer_compiler::model::PairMap;
 use serde::Serialize;
 
-use crate::bench::{Bench, Kind, Point};
+use crate::bench::{Bench, BenchKind, Point};
 use crate::fit::basis::{ThrottleBox, monomials};
 use crate::fit::pair::Pair;
 use crate::fit::voltage::Voltage;
@@ -173,7 +173,7 @@ fn least_power(benches: &[Bench], pair: &Pair, voltage: Option<&Voltage>) -> Res
 
 /// The points of the pair's files that have power, brought to the voltage of the map.
 fn with_power(benches: &[Bench], pair: &Pair, voltage: Option<&Voltage>) -> Result<Vec<Point>, String> {
-    let of_pair = || benches.iter().filter(|b| b.kind == Kind::Pair);
+    let of_pair = || benches.iter().filter(|b| b.kind == BenchKind::Pair);
     // Where the map is brought to a voltage, power is as well.
     let brought = pair.normalised_to_v.zip(voltage.and_then(Voltage::exponents));
     let at_reference = |p: &Point| {

@@ -20,7 +20,7 @@ use self::exponent::Row;
 pub use self::exponent::{Estimate, Exponent};
 pub(crate) use self::profile::off_span;
 use self::profile::{Regressors, profile};
-use crate::bench::{Bench, Kind, Point};
+use crate::bench::{Bench, BenchKind, Point};
 use crate::fit::basis::Centred;
 use crate::fit::range;
 use crate::statistics::{dot, extent, rms};
@@ -47,7 +47,7 @@ const LEVEL: f64 = 0.002;
 #[derive(Debug, Clone, Serialize)]
 pub struct Voltage {
     /// What the exponents come from.
-    pub source: Kind,
+    pub source: BenchKind,
     /// Of thrust.
     pub thrust: Exponent,
     /// Of torque.
@@ -81,7 +81,7 @@ impl Voltage {
 }
 
 /// Examines the files of one kind. Nothing if no row has a voltage.
-pub fn examine(benches: &[Bench], kind: Kind) -> Option<Voltage> {
+pub fn examine(benches: &[Bench], kind: BenchKind) -> Option<Voltage> {
     let of_kind = benches.iter().filter(|b| b.kind == kind).flat_map(|b| &b.points);
     let points: Vec<&Point> = of_kind
         .filter(|p| p.voltage > 0.0 && p.voltage.is_finite())
@@ -146,7 +146,7 @@ fn refused(reason: String, needed: &str) -> Exponent {
 const ANOTHER_VOLTAGE: &str = "the same sweep at another supply voltage, at least 8 % away (a bench supply, or a pack \
                                with a cell more or less), as a second file";
 
-fn exponent(rows: Vec<Row>, kind: Kind, reference: f64) -> Exponent {
+fn exponent(rows: Vec<Row>, kind: BenchKind, reference: f64) -> Exponent {
     if rows.is_empty() {
         return Exponent::NotMeasured;
     }
@@ -210,7 +210,7 @@ fn sound(e: Estimate) -> Exponent {
 
 /// A polynomial through all rows, where files do not share their levels: refused unless voltage
 /// varies on its own.
-fn joint(rows: &[Row], kind: Kind, reference: f64) -> Result<Option<Estimate>, Exponent> {
+fn joint(rows: &[Row], kind: BenchKind, reference: f64) -> Result<Option<Estimate>, Exponent> {
     let voltages = || rows.iter().map(|r| r.voltage);
     let [low, high] = extent(voltages());
     if high < LEAST_RATIO * low {
@@ -223,8 +223,8 @@ fn joint(rows: &[Row], kind: Kind, reference: f64) -> Result<Option<Estimate>, E
     let centred = Centred::new(Basis::Cubic, range(&throttles));
     let terms = |t: &[f64; 2]| -> Vec<f64> {
         match kind {
-            Kind::Pair => centred.values(t[0], t[1]),
-            Kind::SingleRotor => {
+            BenchKind::Pair => centred.values(t[0], t[1]),
+            BenchKind::SingleRotor => {
                 let u = t[0];
                 vec![u, u * u, u * u * u, u * u * u * u]
             }

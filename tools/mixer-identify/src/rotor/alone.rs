@@ -8,7 +8,7 @@
 
 use faer::Mat;
 
-use crate::bench::{Bench, Kind, Point, mean_voltage};
+use crate::bench::{Bench, BenchKind, Point, mean_voltage};
 use crate::fit::basis::ThrottleBox;
 use crate::fit::pair::Pair;
 use crate::fit::polynomial::Polynomial;
@@ -28,7 +28,10 @@ const SHORT: f64 = 0.05;
 /// Where the lowest measured throttle is above this, throttle 0 is an extrapolation.
 const LOW: f64 = 0.15;
 
-/// Identifies a rotor alone from its run.
+/// Identifies a rotor alone from its run; warnings are added to `warnings`.
+///
+/// # Errors
+/// A run in which both rotors turn or the other one does, or that has too few throttles or no torque.
 pub fn identify(
     run: &Bench,
     turning: Turning,
@@ -42,7 +45,7 @@ pub fn identify(
             format!("a run of the {rotor} rotor over all throttles with the {other} one standing still");
         Err(Refusal::of(&run.file, format!("{flag}: {reason}"), needed))
     };
-    if run.kind == Kind::Pair {
+    if run.kind == BenchKind::Pair {
         return refuse("both rotors turn in it".into());
     }
     if run.turning.is_some_and(|found| found != turning) {

@@ -63,13 +63,14 @@ const DIFFERENCE: f64 = 1e-6;
 /// The best constants, and how well they are known.
 #[derive(Debug, Clone)]
 pub struct Posterior {
-    /// The constants.
+    /// The constants of the interaction with the greatest posterior density.
     pub interaction: Interaction,
-    /// For each case the best factors of thrust and of the upper and the lower torque alone.
+    /// For each case, in the order given, the factors `[thrust, upper torque, lower torque]` by which its
+    /// rotors differ from their runs alone; 1 where they do not.
     pub factors: Vec<[f64; 3]>,
-    /// The least sum of squares.
+    /// The least sum of squared residuals, each over its standard deviation.
     pub chi_squared: f64,
-    /// The same over what it may be: about 1.
+    /// The same over the number of residuals and priors: about 1 where the standard deviations are true.
     pub misfit: f64,
     /// Rows of the linear problem at the minimum, and the deviations of its unknowns.
     rows: Vec<Vec<f64>>,

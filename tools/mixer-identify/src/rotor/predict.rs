@@ -12,7 +12,7 @@ use serde::Serialize;
 use toml_edit::{DocumentMut, value};
 
 use crate::air::Air;
-use crate::bench::{Bench, Kind, is_one_signal, mean_voltage};
+use crate::bench::{Bench, BenchKind, is_one_signal, mean_voltage};
 use crate::fit::balance::throttles;
 use crate::fit::basis::ThrottleBox;
 use crate::fit::uncertainty::{EXPONENT_DEVIATION, Uncertainty, by_voltage};
@@ -270,7 +270,7 @@ fn case(
 ) -> Result<(Case, Vec<String>), Refusal> {
     let (rotors, mut rows, mut places) = (rotors(runs), Vec::new(), Vec::new());
     for map in maps {
-        if map.kind != Kind::Pair {
+        if map.kind != BenchKind::Pair {
             return Err(Refusal::of(
                 &map.file,
                 "one rotor stands still in it: it is no row of the pair",

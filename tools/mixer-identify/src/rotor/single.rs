@@ -3,7 +3,7 @@
 use mixer_compiler::airframe::TYPICAL_EXPONENT;
 use serde::Serialize;
 
-use crate::bench::{Bench, Kind, Point, equal_commands, mean_voltage};
+use crate::bench::{Bench, BenchKind, Point, equal_commands, mean_voltage};
 use crate::fit::distinct_pairs;
 use crate::numbers::{self, Told};
 use crate::refusal::Refusal;
@@ -85,7 +85,7 @@ impl Single {
     /// A file that is no run of one rotor, or too little of one.
     pub fn of(bench: &Bench, known: &RunFacts, warnings: &mut Vec<String>) -> Result<Single, Refusal> {
         let file = &bench.file;
-        if bench.kind == Kind::Pair {
+        if bench.kind == BenchKind::Pair {
             return Err(Refusal::of(
                 file,
                 "both rotors turn in it: it is a map of the pair",

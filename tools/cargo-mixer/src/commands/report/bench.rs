@@ -2,7 +2,7 @@
 
 use mixer_compiler::Compiled;
 use mixer_files::report::bench::BenchPoints;
-use mixer_identify::bench::Kind;
+use mixer_identify::bench::BenchKind;
 use mixer_identify::fit::balance::balanced;
 use mixer_identify::identified::Settings;
 use mixer_identify::refusal::Refusal;
@@ -30,7 +30,7 @@ fn add(
     if compiled.airframe.voltage.is_some() {
         bench = balanced(&bench);
     }
-    if bench.kind != Kind::Pair {
+    if bench.kind != BenchKind::Pair {
         return Err(Refusal::of(
             bench.file,
             "one rotor alone says nothing about the pair",

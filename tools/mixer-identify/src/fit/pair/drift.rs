@@ -29,7 +29,7 @@ const OWN: f64 = 0.2;
 /// How a value changes over the run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Kind {
+pub enum DriftKind {
     /// By a constant: the zero of a load cell.
     Offset,
     /// By a share of it: a scale, a voltage, a temperature.
@@ -40,7 +40,7 @@ pub enum Kind {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Drift {
     /// Of which kind.
-    pub kind: Kind,
+    pub kind: DriftKind,
     /// Change from the first row to the last: in the value's unit, or as a share of it.
     pub change: f64,
     /// The change over its standard error.
@@ -65,7 +65,10 @@ impl Drift {
         let e = own(y);
         let fitted: Vec<f64> = y.iter().zip(&e).map(|(y, e)| y - e).collect();
         let scaled = x.iter().zip(&fitted).map(|(x, f)| x * f).collect();
-        let tried = [(Kind::Offset, x, 1.0), (Kind::Scale, scaled, greatest(&fitted))];
+        let tried = [
+            (DriftKind::Offset, x, 1.0),
+            (DriftKind::Scale, scaled, greatest(&fitted)),
+        ];
         let drifts = tried.map(|(kind, x, most)| {
             let own = own(&x);
             let size = dot(&own, &own);
@@ -86,32 +89,32 @@ impl Drift {
     fn in_words(&self, file: &str, of: &str, unit: &str) -> String {
         let (change, t, share) = (self.change, self.t, 100.0 * self.share);
         let half = match self.kind {
-            Kind::Offset => 0.5 * change.abs(),
-            Kind::Scale => 50.0 * change.abs(),
+            DriftKind::Offset => 0.5 * change.abs(),
+            DriftKind::Scale => 50.0 * change.abs(),
         };
         let (how, hover) = match (self.kind, unit) {
-            (Kind::Offset, "N") => (
+            (DriftKind::Offset, "N") => (
                 format!("by {change:+.3} N"),
                 format!("a hover at half of full thrust is off by up to {share:.1} %"),
             ),
-            (Kind::Offset, _) => (
+            (DriftKind::Offset, _) => (
                 format!("by {change:+.4} N m"),
                 format!("yaw in hover is off by up to {half:.4} N m a unit"),
             ),
-            (Kind::Scale, "N") => (
+            (DriftKind::Scale, "N") => (
                 format!("in scale by {:+.1} %", 100.0 * change),
                 format!("a hover is off by up to {half:.1} % of its thrust"),
             ),
-            (Kind::Scale, _) => (
+            (DriftKind::Scale, _) => (
                 format!("in scale by {:+.1} %", 100.0 * change),
                 format!("yaw in hover is off by up to {half:.1} %"),
             ),
         };
         let mend = match self.kind {
-            Kind::Offset => {
+            DriftKind::Offset => {
                 "rows at rest before, in between and after with --tare, or measuring again in the order of cargo mixer plan"
             }
-            Kind::Scale => {
+            DriftKind::Scale => {
                 "a supply of one voltage, or its column with --voltage-exponent; else measuring again in the order of cargo mixer plan"
             }
         };
@@ -127,8 +130,8 @@ impl Drift {
         let rows = y.iter().enumerate().map(|(k, y)| {
             let by = self.change * k as f64 / last;
             match self.kind {
-                Kind::Offset => y - by,
-                Kind::Scale => y / (1.0 + by),
+                DriftKind::Offset => y - by,
+                DriftKind::Scale => y / (1.0 + by),
             }
         });
         rows.collect()
@@ -231,7 +234,7 @@ mod tests {
             let scale = found(&points, |x, f| f * (1.0 - 0.08 * x)).expect("a plan");
             assert_eq!(
                 (scale.told, scale.kind),
-                (true, Kind::Scale),
+                (true, DriftKind::Scale),
                 "{levels}: {scale:?}"
             );
             let mut grid = points;
@@ -250,11 +253,11 @@ mod tests {
             told: true,
         };
         assert_eq!(
-            drift(Kind::Offset, 1.0).taken_off(&[2.0, 3.0, 4.0]),
+            drift(DriftKind::Offset, 1.0).taken_off(&[2.0, 3.0, 4.0]),
             [2.0, 2.5, 3.0]
         );
         assert_eq!(
-            drift(Kind::Scale, -0.5).taken_off(&[2.0, 3.0, 4.0]),
+            drift(DriftKind::Scale, -0.5).taken_off(&[2.0, 3.0, 4.0]),
             [2.0, 4.0, 8.0]
         );
     }

@@ -1,7 +1,7 @@
 use super::*;
 use crate::bench::sign::Signs;
 
-fn bench(kind: Kind, points: Vec<Point>) -> Bench {
+fn bench(kind: BenchKind, points: Vec<Point>) -> Bench {
     Bench {
         file: "b.csv".into(),
         format: "plain".into(),
@@ -60,13 +60,13 @@ fn tenths(shift: f64) -> impl Iterator<Item = f64> {
 }
 
 fn thrust_exponent(benches: &[Bench]) -> Exponent {
-    examine(benches, Kind::SingleRotor).expect("voltages").thrust
+    examine(benches, BenchKind::SingleRotor).expect("voltages").thrust
 }
 
 #[test]
 fn equal_throttles_give_the_true_exponent_despite_sag() {
     for k in [1.5, 1.75, 2.0] {
-        let files = [12.6, 8.4].map(|v| bench(Kind::SingleRotor, sweep(v, 1.0, k, tenths(0.0), 0.01)));
+        let files = [12.6, 8.4].map(|v| bench(BenchKind::SingleRotor, sweep(v, 1.0, k, tenths(0.0), 0.01)));
         let e = thrust_exponent(&files).estimate().cloned().expect("an exponent");
         assert_eq!((e.method, e.levels), ("equal throttles", 10));
         assert!((e.exponent - k).abs() < e.ci95 && e.ci95 < 0.05, "{k}: {e:?}");
@@ -78,7 +78,7 @@ fn equal_throttles_give_the_true_exponent_despite_sag() {
 #[test]
 fn levels_that_differ_are_joined_by_a_polynomial() {
     let files = [(12.6, 0.0), (8.4, 0.05)]
-        .map(|(v, shift)| bench(Kind::SingleRotor, sweep(v, 1.0, 1.75, tenths(shift), 0.005)));
+        .map(|(v, shift)| bench(BenchKind::SingleRotor, sweep(v, 1.0, 1.75, tenths(shift), 0.005)));
     let e = thrust_exponent(&files).estimate().cloned().expect("an exponent");
     assert_eq!(e.method, "joint map");
     assert!((e.exponent - 1.75).abs() < e.ci95 && e.ci95 < 0.1, "{e:?}");
@@ -87,7 +87,7 @@ fn levels_that_differ_are_joined_by_a_polynomial() {
 #[test]
 fn one_voltage_and_a_sagging_battery_give_no_number() {
     let reason = |sag: f64, noise: f64| {
-        let file = bench(Kind::SingleRotor, sweep(25.0, sag, 1.75, tenths(0.0), noise));
+        let file = bench(BenchKind::SingleRotor, sweep(25.0, sag, 1.75, tenths(0.0), noise));
         match thrust_exponent(&[file]) {
             Exponent::Refused { reason, .. } => reason,
             other => panic!("{other:?}"),
@@ -104,11 +104,11 @@ fn different_rotors_are_noticed() {
     weak.iter_mut()
         .enumerate()
         .for_each(|(i, p)| p.thrust *= 0.5 + 0.1 * i as f64);
-    let files = [strong, weak].map(|points| bench(Kind::SingleRotor, points));
+    let files = [strong, weak].map(|points| bench(BenchKind::SingleRotor, points));
     assert!(thrust_exponent(&files).estimate().is_none());
     let strong = sweep(12.6, 0.5, 3.0, tenths(0.0), 0.0);
     let weak = sweep(8.4, 0.5, 3.0, tenths(0.0), 0.0);
-    let files = [strong, weak].map(|points| bench(Kind::SingleRotor, points));
+    let files = [strong, weak].map(|points| bench(BenchKind::SingleRotor, points));
     assert!(
         matches!(thrust_exponent(&files), Exponent::Refused { reason, .. } if reason.contains("no propeller"))
     );
@@ -139,8 +139,11 @@ fn torque_that_changes_its_sign_has_an_exponent_too() {
         (0..25).map(at).collect()
     };
     let v = examine(
-        &[bench(Kind::Pair, map(12.0)), bench(Kind::Pair, map(16.0))],
-        Kind::Pair,
+        &[
+            bench(BenchKind::Pair, map(12.0)),
+            bench(BenchKind::Pair, map(16.0)),
+        ],
+        BenchKind::Pair,
     )
     .expect("voltages");
     for e in [v.thrust, v.torque] {
@@ -150,10 +153,13 @@ fn torque_that_changes_its_sign_has_an_exponent_too() {
 
 #[test]
 fn what_is_not_measured_says_so() {
-    let files = [bench(Kind::SingleRotor, sweep(12.0, 0.0, 1.7, tenths(0.0), 0.0))];
+    let files = [bench(
+        BenchKind::SingleRotor,
+        sweep(12.0, 0.0, 1.7, tenths(0.0), 0.0),
+    )];
     assert!(matches!(
-        examine(&files, Kind::SingleRotor).expect("v").torque,
+        examine(&files, BenchKind::SingleRotor).expect("v").torque,
         Exponent::NotMeasured
     ));
-    assert!(examine(&files, Kind::Pair).is_none());
+    assert!(examine(&files, BenchKind::Pair).is_none());
 }
