@@ -18,7 +18,10 @@ pub(crate) fn write(measured: &Measured, out: &Path) -> Result<(), String> {
     let Measured { name, path, compiled } = measured;
     println!("cargo::rerun-if-changed={}", path.display());
     let tables = compiled.tables.view();
-    for (kind, extension) in [(RequestKind::Attainable, "attainable"), (RequestKind::Saturated, "saturated")] {
+    for (kind, extension) in [
+        (RequestKind::Attainable, "attainable"),
+        (RequestKind::Saturated, "saturated"),
+    ] {
         let bytes: Vec<u8> = Requests::new(&tables, kind, SEED)
             .take(COUNT)
             .flat_map(|request| {

@@ -6,7 +6,7 @@
 //! ([`fit::cross`]), least squares ([`mod@fit`]), [`fit::fold`] -> [`fragment`], [`report`]. Of one
 //! rotor: [`rotor::single`] -> [`rotor::predict`].
 //!
-//! What there is to say of a result is one list of facts ([`fact`]): [`report`] prints it, and
+//! What there is to say of a result is one list of statements ([`statement`]): [`report`] prints it, and
 //! [`fragment`] has it as comments of the tables. [`texts`] is for front ends: text in, text out.
 //!
 //! The crate opens no file and prints nothing. A [`Refusal`](refusal::Refusal) names the file, the
