@@ -26,9 +26,10 @@ PROGRAM = Path(os.environ.get("MIXER_COMMAND", TARGET / "debug/cargo-mixer"))
 PATIENCE = 120
 expect.set_options(timeout=PATIENCE * 1000)
 
-# Chromium drops, in silence, what a page saves beyond this number of files within as many seconds: `kBurstDownloadLimit` in
-# third_party/blink/renderer/core/frame/local_frame.cc, and a tenth of a second. A hand is slower, a test is not.
-AT_ONCE = 10, 1.1
+# Chromium drops the eleventh file that a page saves within a second, and says nothing: `kBurstDownloadLimit` in
+# third_party/blink/renderer/core/frame/local_frame.cc. A hand is slower, a test is not.
+BURST = 10
+BURST_SECONDS = 1.1
 
 # What Chromium would fetch for itself is switched off: a test's machine may have no network.
 QUIET = ["--no-sandbox", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync", "--disable-quic"]
@@ -158,7 +159,7 @@ class Desk:
     def __init__(self, page, shell):
         self.page, self.shell = page, shell
         self.see, self.click = page.locator, page.click
-        self.saved = collections.deque([-AT_ONCE[1]] * AT_ONCE[0], AT_ONCE[0])
+        self.saved = collections.deque([-BURST_SECONDS] * BURST, BURST)
 
     def says(self, text):
         return self.shows("#status", text)
@@ -209,7 +210,7 @@ class Desk:
         """Follows the link of a file; the name and the bytes of what was saved."""
         link = self.link(output)
         expect(link).to_have_attribute("href", re.compile("^blob:"))
-        time.sleep(max(0, self.saved[0] + AT_ONCE[1] - time.monotonic()))
+        time.sleep(max(0, self.saved[0] + BURST_SECONDS - time.monotonic()))
         with self.page.expect_download() as download:
             link.click()
         self.saved.append(time.monotonic())

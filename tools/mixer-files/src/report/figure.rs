@@ -290,7 +290,7 @@ impl Figure {
         )
     }
 
-    /// What the picture holds, and its height, px.
+    /// The content of the SVG element, and its height, px.
     fn inner(&self, entries: &[legend::Entry]) -> (String, f64) {
         let height = self.size[1];
         let rows = legend::rows(entries, WIDTH - MARGIN[0]);

@@ -32,7 +32,7 @@ const SILENCE: Duration = Duration::from_secs(10);
 /// Behind real time by this a step is late, and where Betaflight's motors are as old.
 const LATE: Duration = Duration::from_millis(20);
 
-/// What is counted of them.
+/// The name under which the record counts late steps.
 const LATE_STEPS: &str = "steps that came 20 ms late or more, or with motors as old";
 
 /// Share of late steps from which on a flight is not the mixer's: docs/simulator.md has what was measured.

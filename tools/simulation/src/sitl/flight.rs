@@ -27,11 +27,11 @@ pub type Serve = Box<dyn FnOnce(&mut Flight, &mut Sensors) -> Result<End, String
 pub struct Port {
     /// The stack and the kind of port.
     pub name: &'static str,
-    /// Where it is.
+    /// Its address.
     pub address: std::io::Result<SocketAddr>,
     /// Who flies a manoeuvre.
     pub pilot: Box<dyn Pilot>,
-    /// What is done once it is there.
+    /// Serves the stack once it has come.
     pub serve: Serve,
 }
 

@@ -1,4 +1,4 @@
-//! What keeps Betaflight from arming, by MSP.
+//! Asks Betaflight by MSP what keeps it from arming.
 
 use std::io::{Read, Write};
 use std::net::{Ipv4Addr, TcpStream};
@@ -45,7 +45,7 @@ const REASONS: [&str; 29] = [
     "AUTOPILOT_SW",
 ];
 
-/// What Betaflight says of it, as the end of an error; `None` where it says nothing.
+/// Betaflight's reasons not to arm, as the end of an error message; `None` without an answer.
 pub fn reasons() -> Option<String> {
     let mut stream = TcpStream::connect((Ipv4Addr::LOCALHOST, MSP)).ok()?;
     stream.set_read_timeout(Some(Duration::from_secs(1))).ok()?;
