@@ -361,7 +361,7 @@ fn read(table: &DeTable<'_>, faults: &mut Vec<Diagnostic>) -> Option<Airframe> {
     let vehicle = file.table(&VEHICLE, vehicle::read);
 
     let written = file.key_place(&UNIT);
-    let is_told = || file.faults.iter().any(|fault| fault.key.starts_with("unit"));
+    let is_found = || file.faults.iter().any(|fault| fault.key.starts_with("unit"));
     if written.is_some()
         && let Some(layout) = &layout
     {
@@ -372,7 +372,7 @@ fn read(table: &DeTable<'_>, faults: &mut Vec<Diagnostic>) -> Option<Airframe> {
             .push(fault.label("second description of the units").help(help));
         return None;
     }
-    if file.key_place(&LAYOUT).is_none() && units.is_empty() && !is_told() {
+    if file.key_place(&LAYOUT).is_none() && units.is_empty() && !is_found() {
         let code = if written.is_some() {
             Code::WrongLength
         } else {

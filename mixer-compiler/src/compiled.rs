@@ -40,7 +40,7 @@ macro_rules! compiled {
             pub(crate) of_pairs: Vec<OfPair>,
             /// Share of the attainable set's area that the sides of the closed form lose, or why the airframe
             /// has no closed form.
-            $visibility lost_between_sides: Result<f64, &'static str>,
+            $visibility lost_outside_border: Result<f64, &'static str>,
             /// What is emitted.
             $visibility tables: MixerTables,
         }

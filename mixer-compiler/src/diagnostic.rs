@@ -41,7 +41,7 @@ pub struct Diagnostic {
 impl Diagnostic {
     /// The fault of a file of another kind, which has no place.
     pub(crate) fn of_another_kind(kind: Content) -> Self {
-        let what = kind.told();
+        let what = kind.description();
         let (message, help) = match kind {
             Content::Pair => (
                 format!("no airframe: this is {what}"),
@@ -116,7 +116,7 @@ const MOST_SHOWN: usize = 100;
 /// Faults after which a file is not read on: it is no airframe, and reading should not take long.
 pub(crate) const MOST_FAULTS: usize = 200;
 
-/// Longest line that is shown, bytes. Of a longer one its place is told alone.
+/// Longest line that is shown, bytes. Of a longer one its place is named alone.
 const LONGEST_LINE: usize = 4096;
 
 /// One fault for machines: `cargo mixer check --json`.
@@ -240,7 +240,7 @@ impl Diagnostics {
     }
 
     /// The first of them without its code, for files that are no airframes: `x8.params: message; help`.
-    pub fn told(&self) -> String {
+    pub fn refusal(&self) -> String {
         let first = self.placed().next();
         first.map_or_else(String::new, |(fault, _)| {
             format!("{}: {}; {}", self.source.name, fault.message, fault.help)

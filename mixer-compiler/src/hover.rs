@@ -169,9 +169,11 @@ pub(crate) fn warnings(compiled: &Compiled, told: &[Diagnostic]) -> Vec<Diagnost
         Code::HoversHigh,
         Code::TooLight,
     ];
-    let is_told = told.iter().any(|warning| BY_WEIGHT.contains(&warning.code));
+    let is_explained = told.iter().any(|warning| BY_WEIGHT.contains(&warning.code));
     let warnings = margins(compiled).into_iter();
-    warnings.chain(limits(compiled).filter(|_| !is_told)).collect()
+    warnings
+        .chain(limits(compiled).filter(|_| !is_explained))
+        .collect()
 }
 
 /// Share of the throttle's range within which a rotor is next to its end.

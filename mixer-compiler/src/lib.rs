@@ -99,7 +99,7 @@ pub fn compile(source: &Source) -> Result<Compiled, Diagnostics> {
 fn compile_airframe(source: &Source, airframe: Airframe) -> Result<Compiled, Vec<Diagnostic>> {
     let model = Model::new(airframe)?;
     let selected = selection::select(&model.airframes, &model.corrections)?;
-    let (tables, lost_between_sides) = model.tables(&selected);
+    let (tables, lost_outside_border) = model.tables(&selected);
     let thrust_range_n = thrust_range::thrust_range(&model.airframe, &tables)?;
     thrust_range::check_ends(&model.airframe, &tables, thrust_range_n)?;
     let of_pairs = model.invertible.iter().zip(&selected);
@@ -126,7 +126,7 @@ fn compile_airframe(source: &Source, airframe: Airframe) -> Result<Compiled, Vec
         thrust_range_n,
         certificate: whole.certificate,
         of_pairs,
-        lost_between_sides,
+        lost_outside_border,
         tables,
     };
     probe::run(&compiled)?;
@@ -198,13 +198,13 @@ impl Model {
             tolerance: selection::tolerance(airframe, effectiveness, corrections, airframes, selected),
         };
         let pair = PairMap::new(&airframe.pair, &airframe.throttle);
-        let (closed_form, lost_between_sides) = match closed_form::table(airframe, effectiveness, &pair) {
+        let (closed_form, lost_outside_border) = match closed_form::table(airframe, effectiveness, &pair) {
             Ok((table, lost)) => (Some(table), Ok(lost)),
             Err(reason) => (None, Err(reason)),
         };
         let mut tables = MixerTables::new(&parts, closed_form);
         tables.level_n = thrust_range::level(airframe, &tables);
-        (tables, lost_between_sides)
+        (tables, lost_outside_border)
     }
 }
 

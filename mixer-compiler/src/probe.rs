@@ -6,7 +6,7 @@
 //! compiles and flies wrong, so the whole mixer is tried before the compiler says yes:
 //!
 //! ```text
-//! sides       points on the sides of the closed form are attainable; no more area is lost than stated
+//! border      points on the sides of the closed form are attainable; no more area is lost than stated
 //! wrenches    each axis both ways and mixtures, small and large, at three thrusts, and at the ends of
 //!             the ranges of voltage and density
 //! rotors out  every rotor alone, and pairs of rotors: level flight and torques from there
@@ -17,7 +17,7 @@
 //! a rotor out no thrust given up for yaw. It has to be delivered where the throttles of least norm are well inside their
 //! range. The physics ([`Physics`]) know nothing of M: they add forces and torques unit by unit.
 
-mod sides;
+mod border;
 
 use mixer_rt::tables::Airmode;
 use mixer_rt::{Axis, Conditions, Health, Saturation, Wrench};
@@ -69,7 +69,7 @@ const MOST_PAIRS: usize = 28;
 /// # Errors
 /// The first one that fails: a fault of the compiler.
 pub(crate) fn run(compiled: &Compiled) -> Result<(), Vec<Diagnostic>> {
-    sides::check(compiled, compiled.pair.scale())
+    border::check(compiled, compiled.pair.scale())
         .and_then(|()| probe_whole(compiled))
         .and_then(|()| probe_rotors_out(compiled))
         .map_err(|message| {

@@ -174,7 +174,7 @@ fn judge(name: &str, pair: &str, count: usize) -> Tally {
             let text = frames::toml_with_pair(pair, &places, &channels, options);
             let compiled = frames::compile_text(&text).unwrap_or_else(|faults| panic!("{name}: {faults}"));
             let frame = Frame::new(compiled);
-            let lost = frame.compiled.lost_between_sides;
+            let lost = frame.compiled.lost_outside_border;
             let lost = lost.unwrap_or_else(|reason| panic!("{name}, {frame_name}: {reason}"));
             assert!(lost <= LOST, "{name}, {frame_name}: {lost}");
             let table = frame.compiled.tables.closed_form.as_ref().expect("closed form");

@@ -142,7 +142,7 @@ pub fn measure(data: &Path) -> Result<Measured, String> {
             .ok_or_else(|| format!("{}: no file {part}", folder.display()))?;
         let settings = Settings {
             preparation: Preparation {
-                own_columns: true,
+                prefers_rotor_cell: true,
                 ..Preparation::default()
             },
             ..Settings::default()

@@ -57,7 +57,7 @@ pub enum Content {
 impl Content {
     /// What it is and who reads it, for a message that refuses it.
     #[must_use]
-    pub fn told(self) -> &'static str {
+    pub fn description(self) -> &'static str {
         match self {
             Content::Airframe => "an airframe file, which cargo mixer check reads",
             Content::Pair => "the model of a pair, which cargo mixer new --pair reads",

@@ -241,7 +241,7 @@ pub(crate) fn prove(airframe: &Airframe) -> Result<(Injectivity, f64), Vec<Diagn
 /// for a torque of the right sign.
 fn reversed(airframe: &Airframe) -> &'static str {
     let map = PairMap::new(&airframe.pair, &airframe.throttle);
-    match Wake::told_by(wake::mean_torque(|at| map.efforts(at)[1], map.range())) {
+    match Wake::of_torque(wake::mean_torque(|at| map.efforts(at)[1], map.range())) {
         Wake::Above => {
             "by its mean the torque has the other sign: it counts positive where the lower rotor outweighs the upper; negate every \
              coefficient of torque_nm"
@@ -250,7 +250,7 @@ fn reversed(airframe: &Airframe) -> &'static str {
             "by its mean the torque has the right sign, and the rotors are exchanged: run identify with --swap, or exchange u and l \
              in both polynomials"
         }
-        Wake::Untold => {
+        Wake::Unknown => {
             "torque counts positive where the lower rotor outweighs the upper: negate every coefficient of torque_nm; if the \
              columns of the two rotors were exchanged, exchange u and l in both polynomials instead"
         }

@@ -21,7 +21,7 @@ pub enum Wake {
     /// The rotor that is called the upper one is in the wake.
     Above,
     /// The torque does not tell.
-    Untold,
+    Unknown,
 }
 
 /// The mean of a torque over the box `[low, high]` squared, in shares of its largest size.
@@ -42,11 +42,11 @@ pub fn mean_torque(torque: impl Fn([f64; 2]) -> f64, [low, high]: [f64; 2]) -> f
 
 impl Wake {
     /// What a mean torque says, as [`mean_torque`] gives it.
-    pub fn told_by(mean: f64) -> Wake {
+    pub fn of_torque(mean: f64) -> Wake {
         match mean {
             mean if mean < -TELLS => Wake::Below,
             mean if mean > TELLS => Wake::Above,
-            _ => Wake::Untold,
+            _ => Wake::Unknown,
         }
     }
 }
@@ -58,11 +58,11 @@ mod tests {
     #[test]
     fn the_wake_is_on_the_side_of_the_smaller_torque() {
         let pair = |u: f64, l: f64| 0.16 * l * l - 0.2 * u * u;
-        let told = |torque: &dyn Fn([f64; 2]) -> f64| Wake::told_by(mean_torque(torque, [0.1, 1.0]));
+        let told = |torque: &dyn Fn([f64; 2]) -> f64| Wake::of_torque(mean_torque(torque, [0.1, 1.0]));
         assert_eq!(told(&|[u, l]| pair(u, l)), Wake::Below);
         // Both rotors and sign: det J stays positive.
         assert_eq!(told(&|[u, l]| -pair(l, u)), Wake::Above);
-        assert_eq!(told(&|[u, l]| 0.2 * (l * l - u * u)), Wake::Untold);
-        assert_eq!(told(&|_| 0.0), Wake::Untold);
+        assert_eq!(told(&|[u, l]| 0.2 * (l * l - u * u)), Wake::Unknown);
+        assert_eq!(told(&|_| 0.0), Wake::Unknown);
     }
 }

@@ -32,7 +32,7 @@ const BALANCED_SHARE: f64 = 0.65;
 pub(super) fn odd_place(facts: &Facts<'_>) -> Vec<Rule> {
     let units = &facts.airframe.units;
     let places: Vec<[f64; 3]> = units.iter().map(|unit| unit.position_m).collect();
-    let Some((unit, told)) = symmetry::told(&places) else {
+    let Some((unit, told)) = symmetry::broken(&places) else {
         return Vec::new();
     };
     let key = facts.place("layout", format!("unit[{unit}].position_m"));
@@ -89,7 +89,7 @@ pub(super) fn arms(facts: &Facts<'_>) -> Vec<Rule> {
             LABEL,
             help,
         )
-        .unless_told(&[Code::OddPlace]),
+        .unless_explained(&[Code::OddPlace]),
         Rule::holds(Code::ShortArm, key(0), reach == 0.0 || reach >= shortest)
             .says(
                 format!(
@@ -99,7 +99,7 @@ pub(super) fn arms(facts: &Facts<'_>) -> Vec<Rule> {
                 LABEL,
                 HELP,
             )
-            .unless_told(&[Code::PairUnits, Code::LopsidedPair]),
+            .unless_explained(&[Code::PairUnits, Code::LopsidedPair]),
     ]
 }
 
@@ -166,7 +166,7 @@ pub(super) fn centre_of_gravity(facts: &Facts<'_>) -> Vec<Rule> {
             "",
             "positions count from the centre of gravity, x forward and y right; check signs and origin",
         )
-        .unless_told(&[Code::OddPlace]),
+        .unless_explained(&[Code::OddPlace]),
     ]
 }
 

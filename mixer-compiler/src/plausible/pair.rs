@@ -81,7 +81,7 @@ pub(super) fn units(facts: &Facts<'_>) -> Vec<Rule> {
                 "expected newtons",
                 "if thrust and torque were in gf and gf m, multiply all coefficients by 0.00980665",
             )
-            .unless_told(&[Code::PairUnits]),
+            .unless_explained(&[Code::PairUnits]),
     ]
 }
 
@@ -121,7 +121,7 @@ pub(super) fn thrust(facts: &Facts<'_>) -> Vec<Rule> {
                      idle; with ArduPilot the motors otherwise idle at {most} on the ground and step up at take-off"
                 ),
             )
-            .unless_told(&[Code::HighIdle]),
+            .unless_explained(&[Code::HighIdle]),
     ]
 }
 
@@ -166,7 +166,7 @@ pub(super) fn shape(facts: &Facts<'_>) -> Vec<Rule> {
         .all(|share| (LEFT[0]..=LEFT[1]).contains(share));
     let rule = |holds, message: String| {
         let rule = Rule::holds(Code::PairShape, "pair.thrust_n", holds);
-        rule.says(message, label, mend).unless_told(OTHERS)
+        rule.says(message, label, mend).unless_explained(OTHERS)
     };
     let [least, most] = GROWTH;
     vec![
@@ -237,7 +237,7 @@ pub(super) fn power(facts: &Facts<'_>) -> Vec<Rule> {
                 "in another unit?",
                 help,
             )
-            .unless_told(&[Code::PairUnits]),
+            .unless_explained(&[Code::PairUnits]),
         Rule::holds(Code::PowerUnits, key, is_even && (least..=most).contains(&growth))
             .says(
                 format!(
@@ -250,6 +250,6 @@ pub(super) fn power(facts: &Facts<'_>) -> Vec<Rule> {
                 format!("expected a power of {least} to {most} and rotors within a factor of {POWERS}"),
                 "one coefficient may be off, or out of order: those of the quartic basis and a constant at the end",
             )
-            .unless_told(&[Code::PairUnits, Code::PowerUnits]),
+            .unless_explained(&[Code::PairUnits, Code::PowerUnits]),
     ]
 }

@@ -36,7 +36,7 @@ pub(super) fn order(facts: &Facts<'_>) -> Vec<Rule> {
     let is_refused = facts.effectiveness.is_none();
     let [low, high] = facts.map.range();
     let mean = wake::mean_torque(|at| facts.map.efforts(at)[1], [low, high]);
-    let is_above = low <= WHOLE_MAP * high && Wake::told_by(mean) == Wake::Above;
+    let is_above = low <= WHOLE_MAP * high && Wake::of_torque(mean) == Wake::Above;
     vec![
         rule("torque_nm", is_refused || (by_upper < 0.0 && by_lower > 0.0)).says(
             format!("from idle to full the upper throttle changes the torque by {upper} N m, the lower one by {lower} N m"),
@@ -62,7 +62,7 @@ pub(super) fn order(facts: &Facts<'_>) -> Vec<Rule> {
                 "either the rotors are exchanged: run identify again with --swap; or the lower one is the stronger (more pitch, KV or \
                  diameter): write stronger = \"lower\" under [pair]",
             )
-            .unless_told(&[Code::RotorsExchanged]),
+            .unless_explained(&[Code::RotorsExchanged]),
     ]
 }
 
@@ -85,7 +85,7 @@ pub(super) fn sizes(facts: &Facts<'_>) -> Vec<Rule> {
                     format!("expected within a factor of {most}"),
                     "one coefficient may be off by a factor of ten, or out of the order that the basis fixes",
                 )
-                .unless_told(&[Code::PairUnits, Code::RotorsExchanged, Code::NotCoaxial]),
+                .unless_explained(&[Code::PairUnits, Code::RotorsExchanged, Code::NotCoaxial]),
         );
     }
     let (pair, [_, full]) = (&facts.airframe.pair, facts.map.range());

@@ -16,7 +16,7 @@ pub(super) struct Rule {
     message: String,
     label: String,
     help: String,
-    /// Warnings that may be the reason: where one of them is told, this one is not.
+    /// Warnings that may be the reason: where one of them is found, this one is left out.
     reasons: &'static [Code],
 }
 
@@ -55,15 +55,15 @@ impl Rule {
         self
     }
 
-    /// The same rule, silent where one of these is told.
-    pub(super) fn unless_told(self, reasons: &'static [Code]) -> Rule {
+    /// The same rule, silent where one of these explains it.
+    pub(super) fn unless_explained(self, reasons: &'static [Code]) -> Rule {
         Rule { reasons, ..self }
     }
 
     /// Adds the warning to those `found` before, where the rule is broken.
     pub(super) fn check(self, airframe: &Airframe, found: &mut Vec<Diagnostic>) {
-        let is_told = found.iter().any(|warning| self.reasons.contains(&warning.code));
-        if !self.is_plausible && !is_told {
+        let is_explained = found.iter().any(|warning| self.reasons.contains(&warning.code));
+        if !self.is_plausible && !is_explained {
             found.push(airframe.diagnostic(self.code, &self.key, self.message, self.label, self.help));
         }
     }

@@ -18,14 +18,14 @@ type Place = [f64; 2];
 /// about an offset centre are rounded to millimetres.
 const SAME: f64 = 2.5e-3;
 
-/// Least error that is told, m: frames about an offset centre are rounded to a centimetre, too.
-const TOLD_M: f64 = 0.011;
+/// Least error that is named, m: frames about an offset centre are rounded to a centimetre, too.
+const LEAST_ERROR_M: f64 = 0.011;
 
 /// Units from which on a symmetry about any line is no coincidence.
 const FREE_LINE: usize = 4;
 
-/// Mends that are told where each of several would do.
-const MOST_TOLD: usize = 2;
+/// Mends that are named where each of several would do.
+const MOST_MENDS: usize = 2;
 
 /// A place that would mend the symmetry of a frame.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,9 +52,9 @@ impl fmt::Display for Mend {
 
 /// The mends of a frame, each of which would do, as a sentence, with the unit of the first;
 /// `positions_m` are the units'.
-pub fn told(positions_m: &[[f64; 3]]) -> Option<(usize, String)> {
+pub fn broken(positions_m: &[[f64; 3]]) -> Option<(usize, String)> {
     let mends = mends(positions_m);
-    let each: Vec<String> = mends.iter().take(MOST_TOLD).map(Mend::to_string).collect();
+    let each: Vec<String> = mends.iter().take(MOST_MENDS).map(Mend::to_string).collect();
     let told = format!(
         "a single place breaks the symmetry of the units: it would hold with {}",
         each.join(", or ")
@@ -126,14 +126,14 @@ fn mends(positions_m: &[[f64; 3]]) -> Vec<Mend> {
                 image[mirror.axis] = 0.5 * mirror.sum;
             }
             let is_changed = [0, 1].map(|k| (image[k] - is[k]).abs() > same);
-            let is_told = (0..2).any(|k| (image[k] - is[k]).abs() >= TOLD_M);
+            let is_large = (0..2).any(|k| (image[k] - is[k]).abs() >= LEAST_ERROR_M);
             // To a tenth of a millimetre, as places are written.
             let rounded = |x: f64| (x * 1e4).round() / 1e4 + 0.0;
             let expected: Place =
                 std::array::from_fn(|k| if is_changed[k] { rounded(image[k]) } else { is[k] });
             let mut mended = places.clone();
             mended[unit] = expected;
-            if !is_told || has(&places, expected, same) || mirror.misses(&mended) > 0 {
+            if !is_large || has(&places, expected, same) || mirror.misses(&mended) > 0 {
                 continue;
             }
             let symmetries = |is_free| (0..2).filter(|axis| is_so(*axis, &mended, is_free)).count();

@@ -41,7 +41,7 @@ pub(super) fn rotor_inertia(facts: &Facts<'_>) -> Vec<Rule> {
             "not a rotor of this thrust",
             "kg m2 of one rotor with its motor's bell about its axis: 1 kg m2 is 1e7 g cm2; leave the key out where it is not known",
         )
-        .unless_told(&[Code::PairUnits, Code::TooLight]),
+        .unless_explained(&[Code::PairUnits, Code::TooLight]),
     ]
 }
 
@@ -93,7 +93,7 @@ pub(super) fn hover(facts: &Facts<'_>) -> Vec<Rule> {
                 "rises at idle",
                 "check the mass and the units of thrust_n, or lower throttle.min",
             )
-            .unless_told(&[Code::TooHeavy]),
+            .unless_explained(&[Code::TooHeavy]),
         Rule::at_most(Code::HoversHigh, KEY, weight, HIGH * left)
             .says(
                 format!(
@@ -105,7 +105,7 @@ pub(super) fn hover(facts: &Facts<'_>) -> Vec<Rule> {
                 "little is left",
                 "roll, pitch and yaw come out of what hover leaves; frames hover at 30 to 60 %",
             )
-            .unless_told(&[Code::TooHeavy, Code::FloatsAtIdle]),
+            .unless_explained(&[Code::TooHeavy, Code::FloatsAtIdle]),
         Rule::at_most(Code::TooLight, KEY, ceiling / weight, LIFTS)
             .says(
                 format!(
@@ -117,6 +117,6 @@ pub(super) fn hover(facts: &Facts<'_>) -> Vec<Rule> {
                 "too light",
                 "check the mass, in kg with battery and payload, and the units of thrust_n",
             )
-            .unless_told(&[Code::PairUnits, Code::FloatsAtIdle]),
+            .unless_explained(&[Code::PairUnits, Code::FloatsAtIdle]),
     ]
 }

@@ -8,8 +8,8 @@
 //! ```text
 //! 1. w within the zonotope of the thrusts in [a, b]^n                       closed_form/facets.rs
 //! 2. f = C+ w + z N, N the null space of C, with z as near zero as can be   closed_form/thrusts.rs
-//! 3. z towards where yaw reaches furthest, if it does not reach the request closed_form/climb.rs
-//!    thrust given up for the reserve, all three for zero yaw                closed_form/retreat.rs
+//! 3. z towards where yaw reaches furthest, if it does not reach the request closed_form/extend_yaw.rs
+//!    thrust given up for the reserve, all three for zero yaw                closed_form/keep_yaw.rs
 //! 4. the torques within [Q_min(f), Q_max(f)]                                closed_form/torques.rs
 //! ```
 //!
@@ -25,9 +25,9 @@
 //! comes before thrust the problems cannot be separated, and the interior point method serves the airframe.
 
 mod border;
-mod climb;
+mod extend_yaw;
 mod facets;
-mod retreat;
+mod keep_yaw;
 mod thrusts;
 mod torques;
 

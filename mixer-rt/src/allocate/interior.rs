@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! least   sum_j c_j w_j s_j  +  rho/2 sum_i (t_i - t_i*)^2
-//! over    t_i in (min, max) for every rotor that turns, s_j in (0, 1) for every shortage
+//! over    t_i in (min, max) for every rotor that turns, s_j in (0, 1) for every slack
 //! with    sum_i B_i y_i(t) + sum_j a_j s_j = w
 //! ```
 //!
@@ -179,7 +179,7 @@ impl<P: Quantity, I: Inverse, S: AllocationMethod<P>, const VERTICAL: bool> Fram
             let Expansion {
                 mut value,
                 slopes,
-                bends,
+                curvatures,
             } = unit.rotors.expansion(
                 tables.pair_of(index),
                 tables.singles_of(index),
@@ -188,11 +188,11 @@ impl<P: Quantity, I: Inverse, S: AllocationMethod<P>, const VERTICAL: bool> Fram
             let gain = Products::<VERTICAL>::gains(&unit.columns, lambda);
             let mut responses = [[0.0; 3]; 2];
             for side in 0..2 {
-                let ([f, q], [f2, q2]) = (slopes[side], bends[side]);
+                let ([f, q], [f2, q2]) = (slopes[side], curvatures[side]);
                 let unknown = &mut unit.unknowns[side];
                 let more = gain[0] * f + gain[1] * q + rho * (unit.targets[side] - unknown.low);
-                let bent = -2.0 * (gain[0] * f2 + gain[1] * q2);
-                gap += unknown.eliminate(more, Some(rho + larger(bent, 0.0)), mu);
+                let curvature = -2.0 * (gain[0] * f2 + gain[1] * q2);
+                gap += unknown.eliminate(more, Some(rho + larger(curvature, 0.0)), mu);
                 value[0] += f * unknown.step;
                 value[1] += q * unknown.step;
                 let (by_f, by_q) = (unknown.response * f, unknown.response * q);
@@ -218,7 +218,7 @@ impl<P: Quantity, I: Inverse, S: AllocationMethod<P>, const VERTICAL: bool> Fram
         advance(units, share);
     }
 
-    /// Moves the throttles alone to meet the rows by the forward map, the shortages staying.
+    /// Moves the throttles alone to meet the rows by the forward map, the slacks staying.
     #[inline(never)]
     fn correct(&self, request: &Request, units: &mut [UnitState], system: &Factors) {
         let change = system.solve(self.missed(request, units));

@@ -1,12 +1,12 @@
 //! The request in rows, and what may be short of it at what cost.
 //!
 //! Rows are those of the request: roll and pitch along it, across it, yaw in its sense, thrust. So a
-//! shortage is part of one row and adds to one element of the system's diagonal only; in the axes' own
+//! slack is part of one row and adds to one element of the system's diagonal only; in the axes' own
 //! rows that of roll and pitch fills a block whose determinant cancels in single precision. A row is
 //! scaled so that n units have the authority n.
 //!
 //! Costs are those of [`priorities`](super::priorities). Nothing may be short across (roll, pitch): their
-//! direction stays. Every shortage ends at what is asked: with all rotors nothing is reversed or exceeded
+//! direction stays. Every slack ends at what is asked: with all rotors nothing is reversed or exceeded
 //! while the rows are met.
 //!
 //! With rotors out yaw may be anything, at a cost per distance from what is asked: a rotor alone in its unit
@@ -31,19 +31,19 @@ const TORQUE_LIMIT: f32 = 1.2;
 const THRUST_LIMITS: [f32; 2] = [-0.05, 1.05];
 const EXCESS_LIMIT: f32 = 1.1;
 
-/// Least width of a shortage, rows.
+/// Least width of a slack, rows.
 const LEAST_WIDTH: f32 = 1e-3;
 
-/// Shortages up to this count as none, rows: the barrier at its least weight leaves a quarter of it at
+/// Slacks up to this count as none, rows: the barrier at its least weight leaves a quarter of it at
 /// the least cost.
 const NEGLIGIBLE: f32 = 2e-4;
 
 /// Roll and pitch below this count as none, rows; their direction is then that of roll.
 const LEVEL: f32 = 1e-12;
 
-/// Part of a row that may be given up.
+/// The slack of a row: its part that may be given up.
 #[derive(Clone, Copy)]
-pub(super) struct Shortage {
+pub(super) struct Slack {
     /// The share of the width that is given up.
     unknown: Unknown,
     /// Rows, signed.
@@ -52,19 +52,19 @@ pub(super) struct Shortage {
     cost: f32,
 }
 
-impl Shortage {
+impl Slack {
     fn new(width: f32, cost: f32) -> Self {
         let width = larger(width, LEAST_WIDTH);
-        Shortage {
+        Slack {
             unknown: Unknown::central(1.0),
             width,
             cost: cost * width,
         }
     }
 
-    /// An excess in place of a shortage.
+    /// Of an excess in place of a shortage.
     fn opposite(self) -> Self {
-        Shortage {
+        Slack {
             width: -self.width,
             ..self
         }
@@ -102,7 +102,7 @@ pub(super) struct Request {
     /// The sense of yaw, 1 or -1.
     sense: f32,
     /// Of roll and pitch, of thrust, of thrust in excess, of yaw, of yaw within the reserve, of yaw in excess.
-    shortages: [Shortage; 6],
+    slacks: [Slack; 6],
     /// Whether the last two take part: with a reserve, with rotors out.
     has_reserve: bool,
     may_exceed: bool,
@@ -153,13 +153,13 @@ impl Request {
             wanted: [along, 0.0, turn, thrust],
             direction: [roll * per_along, pitch * per_along],
             sense,
-            shortages: [
-                Shortage::new(along, TORQUE),
-                Shortage::new(thrust, thrust_cost),
-                Shortage::new(EXCESS_LIMIT * n - thrust, excess_cost).opposite(),
-                Shortage::new(turn - kept, yaw_cost),
-                Shortage::new(far + kept, RESERVED),
-                Shortage::new(yaw_limit - turn, yaw_cost).opposite(),
+            slacks: [
+                Slack::new(along, TORQUE),
+                Slack::new(thrust, thrust_cost),
+                Slack::new(EXCESS_LIMIT * n - thrust, excess_cost).opposite(),
+                Slack::new(turn - kept, yaw_cost),
+                Slack::new(far + kept, RESERVED),
+                Slack::new(yaw_limit - turn, yaw_cost).opposite(),
             ],
             has_reserve: reserve > 0.0,
             may_exceed: !is_whole,
@@ -180,12 +180,12 @@ impl Request {
         })
     }
 
-    /// Eliminates the shortages: takes them from the rows wanted, and adds to the system's diagonal. Returns
+    /// Eliminates the slacks: takes them from the rows wanted, and adds to the system's diagonal. Returns
     /// the rows, and the sum of the gaps.
     #[inline(always)]
     pub(super) fn eliminate(&mut self, lambda: &[f32; 4], mu: f32, matrix: &mut Matrix) -> ([f32; 4], f32) {
         let mut missed = self.wanted;
-        let [torque, little, much, yaw, kept, more] = &mut self.shortages;
+        let [torque, little, much, yaw, kept, more] = &mut self.slacks;
         let mut gap = torque.eliminate(lambda[0], mu, &mut missed[0], &mut matrix[0]);
         gap += yaw.eliminate(lambda[2], mu, &mut missed[2], &mut matrix[7]);
         gap += little.eliminate(lambda[3], mu, &mut missed[3], &mut matrix[9]);
@@ -202,7 +202,7 @@ impl Request {
     /// Steps with a change of the multipliers; raises `most` to the largest step over its room.
     #[inline(always)]
     pub(super) fn respond(&mut self, change: &[f32; 4], most: &mut f32) {
-        let [torque, little, much, yaw, kept, more] = &mut self.shortages;
+        let [torque, little, much, yaw, kept, more] = &mut self.slacks;
         torque.respond(change[0], most);
         yaw.respond(change[2], most);
         little.respond(change[3], most);
@@ -218,16 +218,16 @@ impl Request {
     /// Goes a share of the steps.
     #[inline(always)]
     pub(super) fn advance(&mut self, share: f32) {
-        for shortage in &mut self.shortages {
-            shortage.unknown.advance(share);
+        for slack in &mut self.slacks {
+            slack.unknown.advance(share);
         }
     }
 
-    /// The rows wanted less the shortages.
+    /// The rows wanted less the slacks.
     #[inline(always)]
     pub(super) fn left(&self) -> [f32; 4] {
         let [along, across, turn, thrust] = self.wanted;
-        let [torque, little, much, mut yaw, kept, more] = self.shortages.each_ref().map(Shortage::amount);
+        let [torque, little, much, mut yaw, kept, more] = self.slacks.each_ref().map(Slack::amount);
         if self.has_reserve {
             yaw += kept;
         }

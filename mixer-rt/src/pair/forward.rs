@@ -61,17 +61,18 @@ impl<P: Quantity> Pair<P> {
         Expansion {
             value: [f, q],
             slopes: [[f_u, q_u], [f_l, q_l]],
-            bends: [[f_uu, q_uu], [f_ll, q_ll]],
+            curvatures: [[f_uu, q_uu], [f_ll, q_ll]],
         }
     }
 }
 
-/// Efforts `[f, Q]` of a unit, and by each throttle their slopes and half their second derivatives.
+/// Efforts `[f, Q]` of a unit, and by each throttle their slopes and their curvatures, which are half their
+/// second derivatives.
 #[derive(Clone, Copy)]
 pub(crate) struct Expansion {
     pub(crate) value: [f32; 2],
     pub(crate) slopes: [[f32; 2]; 2],
-    pub(crate) bends: [[f32; 2]; 2],
+    pub(crate) curvatures: [[f32; 2]; 2],
 }
 
 impl Expansion {
@@ -79,7 +80,7 @@ impl Expansion {
     pub(crate) const NOTHING: Expansion = Expansion {
         value: [0.0; 2],
         slopes: [[0.0; 2]; 2],
-        bends: [[0.0; 2]; 2],
+        curvatures: [[0.0; 2]; 2],
     };
 }
 

@@ -66,12 +66,12 @@ impl Rotors {
             [false, true] => (lower, l, 1),
             [false, false] => return Expansion::NOTHING,
         };
-        let [value, slope, bend] = curve.expansion(throttle);
+        let [value, slope, curvature] = curve.expansion(throttle);
         let mut expansion = Expansion {
             value,
             ..Expansion::NOTHING
         };
-        (expansion.slopes[side], expansion.bends[side]) = (slope, bend);
+        (expansion.slopes[side], expansion.curvatures[side]) = (slope, curvature);
         expansion
     }
 }

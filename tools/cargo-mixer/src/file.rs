@@ -37,7 +37,7 @@ pub(crate) fn read_log(path: &Path) -> Result<Vec<u8>, String> {
 /// As [`read_small`]; bytes that are neither, with the place of the first.
 pub fn source(path: &Path) -> Result<Source, String> {
     let name = path.display().to_string();
-    Source::from_bytes(name, read_small(path)?).map_err(|faults| faults.told())
+    Source::from_bytes(name, read_small(path)?).map_err(|faults| faults.refusal())
 }
 
 /// Refuses a file that is there already, unless `force` is given. A device or a pipe has nothing to

@@ -594,7 +594,7 @@ fn inverse(list: &mut List, compiled: &Compiled) {
     list.say("proof", compiled.certificate.cells, "cells", words)
         .json("observed_points", points)
         .json("certificate", certificate);
-    let lost = compiled.lost_between_sides;
+    let lost = compiled.lost_outside_border;
     let cells = compiled.tables.closed_form.as_ref();
     let cells = cells.map_or(0, |table| table.cells.len().saturating_sub(1));
     let words = match lost {

@@ -90,7 +90,7 @@ pub fn stated(file: &Source) -> Result<Stated, String> {
 pub fn import(file: &Source, pair: Option<&Source>, options: &Options<'_>) -> Result<Import, String> {
     let mut imported = read(file, options.arm_m)?;
     let units = pairs::pair(&imported.rotors, options.upper)?;
-    imported.notes.extend(unused::told(&imported.rotors, &units)?);
+    imported.notes.extend(unused::notes(&imported.rotors, &units)?);
     let pair = pair
         .map(|pair| PairFile::read(&pair.name, &pair.text))
         .transpose()?;
@@ -102,7 +102,7 @@ pub fn import(file: &Source, pair: Option<&Source>, options: &Options<'_>) -> Re
     let places: Vec<[f64; 3]> = units.iter().map(|unit| unit.position_m).collect();
     imported
         .notes
-        .extend(symmetry::told(&places).map(|(_, told)| told));
+        .extend(symmetry::broken(&places).map(|(_, told)| told));
     let tables = text::tables(&mut imported, &units, pair.as_ref());
     if let Some(pulses) = &imported.pulses {
         let airframe = Source::new("airframe.toml", format!("name = \"a\"\n{tables}"));
@@ -110,7 +110,7 @@ pub fn import(file: &Source, pair: Option<&Source>, options: &Options<'_>) -> Re
         let of_bench = options.pulses_us.or_else(|| bench_pulses(airframe.as_ref()?));
         let map = airframe.map(|airframe| airframe.with_mean_pair());
         let map = map.map(|airframe| PairMap::new(&airframe.pair, &airframe.throttle));
-        let told = pulses.told(of_bench.unwrap_or(USUAL_US), map.as_ref());
+        let told = pulses.mismatch(of_bench.unwrap_or(USUAL_US), map.as_ref());
         imported.notes.extend(told);
     }
     let name = options
@@ -127,7 +127,7 @@ fn read(file: &Source, arm_m: Option<f64>) -> Result<Imported, String> {
     let mut imported = match content::of(&file.text) {
         Content::Betaflight => betaflight::import::read(file, arm_m)?,
         other @ (Content::Airframe | Content::Pair | Content::Foreign(_)) => {
-            return Err(format!("{}: this is {}", file.name, other.told()));
+            return Err(format!("{}: this is {}", file.name, other.description()));
         }
         _ => of_parameters(file, arm_m)?,
     };

@@ -84,7 +84,7 @@ pub fn read(name: &str, bytes: &[u8], identify: &Settings, predict: &Settings) -
             text,
             points: 0,
         }),
-        Err(faults) => Err(faults.told()),
+        Err(faults) => Err(faults.refusal()),
     }
 }
 

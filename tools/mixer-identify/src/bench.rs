@@ -12,7 +12,7 @@ use serde::Serialize;
 
 use self::air::BenchAir;
 use self::header::Columns;
-use self::read::{Fault, Log, RefusedRow, Sample, refused_told};
+use self::read::{Fault, Log, RefusedRow, Sample, refusal_notes};
 use self::sign::{SignPolicy, Signs};
 use self::units::Quantity;
 use crate::refusal::Refusal;
@@ -148,13 +148,13 @@ impl Bench {
     pub(crate) fn passed_over(&self) -> Vec<String> {
         const MOST: usize = 5;
         let tare = self.tare.iter().map(|tare| format!("{}: {tare}", self.file));
-        let tare = tare.chain(self.offsets_told());
-        let rows = refused_told(self.refused_rows.iter(), MOST);
+        let tare = tare.chain(self.offset_notes());
+        let rows = refusal_notes(self.refused_rows.iter(), MOST);
         tare.chain(self.notes.iter().cloned()).chain(rows).collect()
     }
 
     /// [`Bench::offsets`] with the file's name.
-    pub(crate) fn offsets_told(&self) -> impl Iterator<Item = String> {
+    pub(crate) fn offset_notes(&self) -> impl Iterator<Item = String> {
         self.offsets
             .iter()
             .map(|offset| format!("{}: {offset}", self.file))
@@ -185,7 +185,7 @@ pub struct Preparation {
     pub is_correction: bool,
     /// Whether a run of one rotor is of that rotor, not of the whole: what it drives through the
     /// one at rest, which has a drag, is then left aside.
-    pub own_columns: bool,
+    pub prefers_rotor_cell: bool,
     /// The air of the bench, given by hand; else of columns where there are any.
     pub air: Option<BenchAir>,
 }
@@ -233,7 +233,7 @@ impl Turned {
     /// What the user should know of it.
     fn note(&self, columns: &Columns, how: &Preparation) -> Option<String> {
         match self.kind {
-            BenchKind::SingleRotor if self.two_throttles && !how.own_columns => {
+            BenchKind::SingleRotor if self.two_throttles && !how.prefers_rotor_cell => {
                 let still = if self.rotors == [0] { "lower" } else { "upper" };
                 Some(format!(
                     "the {still} rotor stands still throughout: a single rotor"
@@ -371,9 +371,13 @@ pub fn prepare(log: Log, how: &Preparation) -> Result<Bench, Refusal> {
             notes.extend(uneven);
             sign::pair(&name, &columns, &samples, &how.signs, may_lack_torque, &mut notes)?
         }
-        BenchKind::SingleRotor => {
-            sign::single(&columns, turned.rotors[0], how.own_columns, &samples, &how.signs)
-        }
+        BenchKind::SingleRotor => sign::single(
+            &columns,
+            turned.rotors[0],
+            how.prefers_rotor_cell,
+            &samples,
+            &how.signs,
+        ),
     };
     let mut points = Vec::new();
     for (sample, sums) in samples.iter().zip(sums) {

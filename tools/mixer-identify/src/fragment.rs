@@ -250,12 +250,12 @@ pub fn of_prediction(predicted: &Predicted) -> String {
 
 /// The statements about a table.
 fn comments(statements: &[Statement], table: &str) -> String {
-    let is_told = |statement: &&Statement| statement.table == table && statement.told != Detail::Reported;
+    let is_stated = |statement: &&Statement| statement.table == table && statement.detail != Detail::Reported;
     let line = |statement: &Statement| match statement.name {
         "" => comment("  ", &statement.text),
         name => comment("", &format!("{name}: {}", statement.text)),
     };
-    statements.iter().filter(is_told).map(line).collect()
+    statements.iter().filter(is_stated).map(line).collect()
 }
 
 /// A comment with `mark` before its first line. TOML has no control characters in comments.

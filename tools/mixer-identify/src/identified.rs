@@ -37,7 +37,7 @@ pub struct Identified {
     pub generator: String,
     /// The map; none where all files are of single rotors.
     pub pair: Option<Pair>,
-    /// The dependence on voltage; none where no file has a voltage.
+    /// The effect of the voltage; none where no file has a voltage.
     pub voltage: Option<Voltage>,
     /// The air.
     pub air: Air,
@@ -99,10 +99,13 @@ pub fn with_runs(
         .iter_mut()
         .chain(runs.iter_mut().flatten())
         .for_each(|b| air.bring(b));
-    let told: Result<Vec<_>, Refusal> = benches.iter().map(|bench| numbers::told(bench, None)).collect();
-    let told = told?.concat();
+    let anomalies: Result<Vec<_>, Refusal> = benches
+        .iter()
+        .map(|bench| numbers::anomalies(bench, None))
+        .collect();
+    let anomalies = anomalies?.concat();
     let balanced: Vec<Bench> = benches.iter().map(balanced).collect();
-    let voltage = dependence(&balanced).filter(|_| !wishes.closed_loop);
+    let voltage = measured_exponents(&balanced).filter(|_| !wishes.closed_loop);
     let voltage = match wishes.voltage_exponent {
         Some(exponents) => Some(declared(voltage, exponents, &benches)?),
         None => voltage,
@@ -113,10 +116,10 @@ pub fn with_runs(
     air.exponents = exponents.map_or(of_air, |k| k.map(|k| k - 1.0));
     let has = |kind| benches.iter().any(|b| b.kind == kind);
     let read = benches.iter().chain(runs.iter().flatten());
-    let mut warnings: Vec<String> = read.flat_map(Bench::offsets_told).collect();
+    let mut warnings: Vec<String> = read.flat_map(Bench::offset_notes).collect();
     warnings.extend(air.doubt());
     let pair = if has(BenchKind::Pair) {
-        let pair = pair::identify(&benches, voltage.as_ref(), wishes, &told)?;
+        let pair = pair::identify(&benches, voltage.as_ref(), wishes, &anomalies)?;
         warnings.extend(pair.warnings.clone());
         let of_runs = with_alone(pair, &runs, voltage.as_ref(), &mut warnings);
         Some(of_runs?)
@@ -297,7 +300,7 @@ fn no_copies(benches: &[Bench]) -> Result<(), Refusal> {
 }
 
 /// The exponents from the pair's own maps if these tell any, else from single rotors.
-fn dependence(benches: &[Bench]) -> Option<Voltage> {
+fn measured_exponents(benches: &[Bench]) -> Option<Voltage> {
     let pair = voltage::examine(benches, BenchKind::Pair);
     let single = voltage::examine(benches, BenchKind::SingleRotor);
     match (pair, single) {
@@ -306,7 +309,7 @@ fn dependence(benches: &[Bench]) -> Option<Voltage> {
     }
 }
 
-/// The dependence with the user's own exponents, which need a voltage of every row to work on.
+/// The voltage's effect with the user's own exponents, which need a voltage of every row to work on.
 fn declared(
     measured: Option<Voltage>,
     [thrust, torque]: [f64; 2],

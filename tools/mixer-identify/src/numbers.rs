@@ -2,7 +2,7 @@
 //!
 //! `identify` and `predict` read the table for every file, `check` has its limits of what a map alone shows
 //! ([`TORQUE_SPAN_M`], [`GROWTH`]). A value with a standard error is outside where it is by four of them. Of one group
-//! the first number outside is told: it explains those behind it. `docs/warnings.md` has what the files at hand have.
+//! the first number outside is named: it explains those behind it. `docs/warnings.md` has what the files at hand have.
 
 use std::f64::consts::PI;
 
@@ -33,7 +33,7 @@ pub struct Number {
 
 /// A number outside.
 #[derive(Debug, Clone)]
-pub struct Told {
+pub struct Anomaly {
     /// The file.
     pub file: String,
     /// The number, and the cause of it.
@@ -45,15 +45,15 @@ pub struct Told {
     group: usize,
 }
 
-impl Told {
+impl Anomaly {
     /// All that is said.
     pub(crate) fn sentence(&self) -> String {
         format!("{}: {}; {}", self.file, self.text, self.mend)
     }
 
     /// The refusal of a map, with the rows that explain it.
-    pub(crate) fn explains(told: &[Told], refusal: Refusal) -> Refusal {
-        match told.iter().find(|told| told.group == 1) {
+    pub(crate) fn explains(anomalies: &[Anomaly], refusal: Refusal) -> Refusal {
+        match anomalies.iter().find(|anomaly| anomaly.group == 1) {
             Some(rows) => Refusal::of(
                 &rows.file,
                 format!("{}; {}", rows.text, refusal.reason),
@@ -403,12 +403,12 @@ fn along(rows: &[Vec<f64>], x: &[f64], y: &[f64]) -> Option<[f64; 2]> {
 ///
 /// # Errors
 /// A number that no pair, or no rotor, has.
-pub(crate) fn told(bench: &Bench, diameter_m: Option<f64>) -> Result<Vec<Told>, Refusal> {
-    let mut found: Vec<Told> = Vec::new();
+pub(crate) fn anomalies(bench: &Bench, diameter_m: Option<f64>) -> Result<Vec<Anomaly>, Refusal> {
+    let mut found: Vec<Anomaly> = Vec::new();
     let run = Run::new(bench, diameter_m);
     for (group, number, [x, error]) in run.values() {
         let is_outside = |[low, high]: [f64; 2]| x + SURE * error < low || x - SURE * error > high;
-        let is_explained = |told: &Told| told.group == group || (told.group, group) == (1, 2);
+        let is_explained = |anomaly: &Anomaly| anomaly.group == group || (anomaly.group, group) == (1, 2);
         if bench.record_drifts && (1..=2).contains(&group) {
             continue;
         }
@@ -433,7 +433,7 @@ pub(crate) fn told(bench: &Bench, diameter_m: Option<f64>) -> Result<Vec<Told>, 
         if is_outside(number.refused) {
             return Err(Refusal::of(&bench.file, text, mend));
         }
-        found.push(Told {
+        found.push(Anomaly {
             file: bench.file.clone(),
             text,
             mend,

@@ -20,7 +20,10 @@ impl PairFile {
     pub fn read(name: &str, text: &str) -> Result<PairFile, String> {
         let document: DocumentMut = text.parse().map_err(|error| match content::of(text) {
             Content::Airframe | Content::Pair => format!("{name}: {error}"),
-            other => format!("{name}: this is {}, with -o pair.toml for --pair", other.told()),
+            other => format!(
+                "{name}: this is {}, with -o pair.toml for --pair",
+                other.description()
+            ),
         })?;
         if !document.contains_key("pair") {
             return Err(format!(

@@ -24,7 +24,7 @@ pub fn verdict(identified: &Identified) -> String {
     let mut lines = statements_in_lines(
         statements
             .iter()
-            .filter(|statement| statement.told != Detail::Long),
+            .filter(|statement| statement.detail != Detail::Long),
     );
     warnings(&mut lines, &doubts(identified), MOST_LINES);
     lines.join("\n")

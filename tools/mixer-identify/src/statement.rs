@@ -12,10 +12,10 @@ use super::fit::power::{LeastPower, Power};
 use super::fit::voltage::{Estimate, Exponent, Voltage};
 use super::identified::Identified;
 use super::rotor::predict::Predicted;
-use super::rotor::single::exponents_told;
+use super::rotor::single::exponents_in_words;
 use super::rotor::{Alone, Turning};
 
-/// Where a statement is told.
+/// Where a statement stands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Detail {
     /// In every report and in the tables.
@@ -35,8 +35,8 @@ pub struct Statement {
     pub name: &'static str,
     /// The words.
     pub text: String,
-    /// Where it is told.
-    pub told: Detail,
+    /// Where it stands.
+    pub detail: Detail,
 }
 
 /// A list in the making, of one table at a time.
@@ -47,13 +47,13 @@ struct Statements {
 }
 
 impl Statements {
-    fn add(&mut self, told: Detail, name: &'static str, text: impl Into<String>) {
+    fn add(&mut self, detail: Detail, name: &'static str, text: impl Into<String>) {
         let (table, text) = (self.table, text.into());
         self.all.push(Statement {
             table,
             name,
             text,
-            told,
+            detail,
         });
     }
 
@@ -67,7 +67,7 @@ impl Statements {
     }
 }
 
-/// Sag of a supply, as a share, that is told.
+/// Sag of a supply, as a share, that is stated.
 const SAG: f64 = 0.01;
 
 /// Files that are named one by one in every report.
@@ -77,16 +77,16 @@ const MOST_FILES: usize = 4;
 pub fn of_identified(identified: &Identified) -> Vec<Statement> {
     let mut statements = Statements::default();
     for (k, file) in identified.files.iter().enumerate() {
-        let told = if k < MOST_FILES {
+        let detail = if k < MOST_FILES {
             Detail::Always
         } else {
             Detail::Long
         };
-        statements.add(told, "read", format!("{}: {}", file.file, provenance(file)));
+        statements.add(detail, "read", format!("{}: {}", file.file, provenance(file)));
         statements.more(signs(file));
         file.tare
             .iter()
-            .for_each(|tare| statements.add(told, "tare", tare));
+            .for_each(|tare| statements.add(detail, "tare", tare));
     }
     let more = identified.files.len().saturating_sub(MOST_FILES);
     if more > 0 {
@@ -230,7 +230,7 @@ fn of_drift(statements: &mut Statements, pair: &Pair) {
     let told: Vec<String> = seen.iter().filter_map(of).collect();
     if !told.is_empty() {
         let all = pair.drift.iter().filter_map(|shown| shown.drift);
-        let what = if all.clone().any(|drift| drift.told) {
+        let what = if all.clone().any(|drift| drift.significant) {
             "seen"
         } else {
             "none"
@@ -383,7 +383,7 @@ fn of_air(statements: &mut Statements, air: &Air) {
     let brought = match high - low > 1e-3 {
         true => format!(
             "; rows of {low:.3} to {high:.3} kg/m3 are brought to it by {}",
-            exponents_told(air.exponents)
+            exponents_in_words(air.exponents)
         ),
         false => String::new(),
     };
@@ -407,7 +407,7 @@ pub fn of_predicted(predicted: &Predicted) -> Vec<Statement> {
             (Some([low, high]), Some(volts)) if high - low > SAG * volts && run.exponents != [0.0; 2] => {
                 format!(
                     "; its rows of {low:.2} to {high:.2} V are brought to {volts:.2} V by {}",
-                    exponents_told(run.exponents)
+                    exponents_in_words(run.exponents)
                 )
             }
             (_, Some(volts)) => format!(", {volts:.2} V"),

@@ -66,7 +66,7 @@ fn of_another_kind(name: &str, bytes: &[u8]) -> Option<Refusal> {
     let kind = content::of(&normalised(name, bytes).ok()?);
     let is_table = matches!(kind, Content::Table | Content::Other);
     let needed = "the table with the measurements as CSV";
-    (!is_table).then(|| Refusal::of(name, format!("this is {}", kind.told()), needed))
+    (!is_table).then(|| Refusal::of(name, format!("this is {}", kind.description()), needed))
 }
 
 fn read_all(texts: &[Text], settings: &Settings) -> Result<Vec<Bench>, Vec<Refusal>> {

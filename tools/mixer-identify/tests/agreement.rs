@@ -170,7 +170,7 @@ fn outcome(run: &Text, rows: Text, spacing_ratio: f64) -> usize {
 fn own() -> Settings {
     Settings {
         preparation: Preparation {
-            own_columns: true,
+            prefers_rotor_cell: true,
             ..Preparation::default()
         },
         ..Settings::default()
@@ -299,13 +299,13 @@ fn a_stand_with_one_signal_for_both_rotors_corrects_a_prediction() {
         assert!(refused[0].reason.contains("the rows miss"), "{}", refused[0]);
     }
     // A run of both rotors is none of one: their own columns say so, and a net torque near zero.
-    let own_columns = table("throttle,upper_thrust_n,lower_thrust_n", |u, f| {
+    let rotor_columns = table("throttle,upper_thrust_n,lower_thrust_n", |u, f| {
         format!("{u},{f},{}", 0.6 * f)
     });
     let net = table("throttle,thrust_n,torque_nm", |u, f| {
         format!("{u},{},{}", 1.56 * f, 0.001 * f)
     });
-    for run in [&own_columns, &net] {
+    for run in [&rotor_columns, &net] {
         let refused = predict(run, None, &[], &how(true)).expect_err("both rotors");
         assert!(
             refused[0].needed.contains("identify table.csv --prior"),

@@ -29,7 +29,7 @@ pub struct Checked {
 
 /// What came of an airframe file.
 #[derive(Debug, Serialize)]
-pub struct Told {
+pub struct Outcome {
     /// Why it does not compile.
     pub errors: Vec<Record>,
     /// What is probably a mistake in it.
@@ -107,10 +107,10 @@ impl Numbers {
 }
 
 /// Compiles an airframe file.
-pub fn check(name: &str, text: &str) -> (Option<Checked>, Told) {
+pub fn check(name: &str, text: &str) -> (Option<Checked>, Outcome) {
     match mixer_facts::check(&Source::new(name, text)) {
         Ok(checked) => {
-            let told = Told {
+            let outcome = Outcome {
                 errors: Vec::new(),
                 warnings: checked.warnings.records(),
                 verdict: checked.verdict(),
@@ -119,17 +119,17 @@ pub fn check(name: &str, text: &str) -> (Option<Checked>, Told) {
             };
             let isolated = IsolatedTables::new(&checked.compiled);
             let compiled = checked.compiled;
-            (Some(Checked { compiled, isolated }), told)
+            (Some(Checked { compiled, isolated }), outcome)
         }
         Err(faults) => {
-            let told = Told {
+            let outcome = Outcome {
                 errors: faults.records(),
                 warnings: Vec::new(),
                 verdict: String::new(),
                 name: String::new(),
                 numbers: None,
             };
-            (None, told)
+            (None, outcome)
         }
     }
 }

@@ -60,9 +60,9 @@ impl Desk {
 
     /// Compiles an airframe file and keeps it: see [`desk::check`].
     pub fn check(&mut self, name: &str, text: &str) -> String {
-        let (checked, told) = desk::check(name, text);
+        let (checked, outcome) = desk::check(name, text);
         self.checked = checked;
-        json(&told)
+        json(&outcome)
     }
 
     /// The file with a key of a table set, as `allocation`, `airmode`, `"roll-pitch"`.

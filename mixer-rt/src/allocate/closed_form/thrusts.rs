@@ -1,23 +1,10 @@
 //! The thrusts: f = C+ w + z N.
 //!
-//! Where z has room and the requested yaw is out of range at the start, z moves towards the z of
-//! the largest yaw, by the part `(yaw - Y(start)) / (Y(top) - Y(start))` of the way. This makes the
-//! thrusts a Lipschitz function of the request; moving z just far enough would not. Y is nearly
-//! concave: where that part is not enough, a second step of twice the length follows.
-//!
-//! Where yaw does not reach what is needed of it, thrust, roll and pitch are given up: retreat.rs.
+//! Where z has room and the requested yaw is out of range at the start, z moves: extend_yaw.rs. Where yaw then
+//! does not reach what is needed of it, thrust, roll and pitch are given up: keep_yaw.rs.
 
 use super::{Asked, ClosedForm, ClosedFormUnit, ThrustLine};
-use crate::{clamp, divisor, rolled};
-use core::hint::black_box;
-
-/// Most steps towards the largest yaw. The second is twice as long as a straight line asks for.
-const CLIMBS: u32 = 2;
-
-/// Gain of yaw, in units of `yaw_rounding_nm`, from which z moves to the top in full. For a smaller
-/// gain it moves a part of the way, so that z does not jump where the gain vanishes. That costs at
-/// most a quarter of this gain, 0.025 % of the authority in yaw.
-const GAIN: f32 = 100.0;
+use crate::{clamp, rolled};
 
 impl ClosedFormUnit {
     /// The least-norm thrust, N, for `[roll, pitch, thrust]`.
@@ -65,62 +52,18 @@ impl ClosedForm<'_> {
         };
         let wanted = sign * request.yaw;
         if has_room && high > low {
-            (z, reach) = self.climb(lines, sign, (z, reach), [low, high], wanted);
+            (z, reach) = self.extend_yaw(lines, sign, (z, reach), [low, high], wanted);
         }
         // Up to the reserve yaw comes before thrust.
         let kept = if wanted < reserve { wanted } else { reserve };
         if KEEPS_YAW && kept > furthest(reach, sign) {
             wrench[2] = clamp(middle, range[0], range[1]);
-            (z, reach) = self.keep(lines, sign, (z, reach), kept, &wrench);
+            (z, reach) = self.keep_reserve(lines, sign, (z, reach), kept, &wrench);
         }
         // Beyond zero yaw is reversed, beyond the request it is exceeded.
         let needed = if wanted < 0.0 { wanted } else { 0.0 };
         if needed - furthest(reach, sign) > self.yaw_rounding_nm {
-            (z, reach) = self.retreat(lines, sign, (z, reach), needed, middle);
-        }
-        (z, reach)
-    }
-
-    /// Moves z from a point where yaw does not reach `wanted` towards where it reaches furthest
-    /// within `range`. Returns z and the least and most yaw there, and leaves what each unit gives
-    /// of it.
-    #[inline(always)]
-    fn climb(
-        &self,
-        lines: &mut [ThrustLine],
-        sign: f32,
-        (mut z, mut reach): (f32, [f32; 2]),
-        range: [f32; 2],
-        wanted: f32,
-    ) -> (f32, [f32; 2]) {
-        let top = self.top(lines, sign, z, range);
-        if top == z {
-            return (z, reach);
-        }
-        let at_top = self.reach(lines, top);
-        let most = furthest(at_top, sign);
-        let whole = GAIN * self.yaw_rounding_nm;
-        if most <= wanted && most - furthest(reach, sign) >= whole {
-            return (top, at_top);
-        }
-        let mut ahead = 1.0;
-        for _ in 0..black_box(CLIMBS) {
-            let here = furthest(reach, sign);
-            let gain = most - here;
-            let mut part = if gain > 0.0 {
-                ahead * (wanted - here) / divisor(gain)
-            } else {
-                0.0
-            };
-            part = if part < 1.0 { part } else { 1.0 };
-            part *= if gain < whole { gain / whole } else { 1.0 };
-            z += part * (top - z);
-            reach = self.reach(lines, z);
-            let here = furthest(reach, sign);
-            if here >= wanted || here >= most {
-                break;
-            }
-            ahead = 2.0;
+            (z, reach) = self.bound_yaw(lines, sign, (z, reach), needed, middle);
         }
         (z, reach)
     }

@@ -8,7 +8,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use mixer_compiler::airframe::Basis;
 use mixer_compiler::quantity;
 use mixer_identify::bench::Preparation;
-use mixer_identify::bench::read::refused_told;
+use mixer_identify::bench::read::refusal_notes;
 use mixer_identify::fit::basis::ThrottleBox;
 use mixer_identify::fit::wishes::FitOptions;
 use mixer_identify::identified::Settings;
@@ -86,7 +86,7 @@ pub struct IdentifyArgs {
 pub struct BasisChoice(pub Option<Basis>);
 
 /// Most refused rows that are told one by one: without and with `--verbose`.
-const MOST_TOLD: [usize; 2] = [5, 200];
+const MOST_ROWS: [usize; 2] = [5, 200];
 
 const AUTO: &str = "auto";
 
@@ -168,8 +168,8 @@ impl IdentifyArgs {
         let answer =
             identify(&maps, [upper.as_ref(), lower.as_ref()], &settings).map_err(NoAnswer::Refused)?;
         let refused_rows = answer.found.files.iter().flat_map(|file| &file.refused_rows);
-        let most = MOST_TOLD[usize::from(self.verbose)];
-        let notes = refused_told(refused_rows, most);
+        let most = MOST_ROWS[usize::from(self.verbose)];
+        let notes = refusal_notes(refused_rows, most);
         Ok((answer.texts(), notes))
     }
 }

@@ -113,7 +113,7 @@ impl RotorArgs {
                 pwm_range: None,
             },
             preparation: Preparation {
-                own_columns: true,
+                prefers_rotor_cell: true,
                 air,
                 ..Preparation::default()
             },
@@ -159,7 +159,7 @@ impl PredictArgs {
     /// The settings that the arguments ask for.
     pub fn settings(&self) -> Settings {
         let mut settings = self.reading.settings();
-        settings.preparation.own_columns = true;
+        settings.preparation.prefers_rotor_cell = true;
         settings.preparation.air = self.air.air();
         settings
     }

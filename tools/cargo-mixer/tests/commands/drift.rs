@@ -84,7 +84,7 @@ fn a_drift_is_told_in_a_drawn_order_and_nothing_in_that_of_a_grid() {
                 let both = ["thrust", "torque"].map(|of| shown(&found, of));
                 let t = both.map(|drift| drift.map_or("-".to_owned(), |drift| format!("{:.1}", drift.t)));
                 line += &format!(" {},", t.join(" "));
-                let told = both.map(|drift| drift.is_some_and(|drift| drift.told));
+                let told = both.map(|drift| drift.is_some_and(|drift| drift.significant));
                 assert_eq!(both.map(|drift| drift.is_some()), [is_drawn; 2], "{line}");
                 let wanted = [["tare", "scale"].contains(&name), name == "torque"].map(|is| is && is_drawn);
                 assert!(told == wanted || is_told_otherwise, "{line} {name}");

@@ -52,12 +52,12 @@ const TRUE_OF_THAT: [&str; 1] = ["--tare takes it off all rows"];
 
 /// How often each was told, and what was told and is not true.
 #[derive(Default)]
-struct Told {
+struct Tally {
     counts: BTreeMap<String, usize>,
     alarms: Vec<String>,
 }
 
-impl Told {
+impl Tally {
     /// A sentence of `identify` or `predict`.
     fn sentence(&mut self, sentence: &str, file: &Path) {
         let is_of = |words: &&&str| sentence.contains(**words);
@@ -130,7 +130,7 @@ fn rotors(file: &Path) -> String {
 fn no_real_map_warns() {
     let files = maps::files();
     let runs = ["single_rotor", "bottom_rotor"].map(|word| maps::named(&[word]));
-    let mut told = Told::default();
+    let mut told = Tally::default();
     let mut with_runs = 0;
     for (index, map) in files.iter().enumerate() {
         // Every run of the same rotors has its turn.
@@ -169,7 +169,7 @@ struct Arguments {
 #[ignore = "needs MIXER_BENCH_DATA"]
 fn no_prediction_of_a_real_run_warns() {
     let runs = maps::named(&["single_rotor", "bottom_rotor"]);
-    let mut told = Told::default();
+    let mut told = Tally::default();
     for run in &runs {
         let arguments = Arguments::try_parse_from(["predict".as_ref(), run.as_os_str()]);
         let arguments = arguments.unwrap_or_else(|error| panic!("{error}")).predict;

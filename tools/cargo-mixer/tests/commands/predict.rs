@@ -114,7 +114,7 @@ fn predicted_airframes_lift_what_is_asked() {
     };
     let settings = Settings {
         preparation: Preparation {
-            own_columns: true,
+            prefers_rotor_cell: true,
             ..Preparation::default()
         },
         ..Settings::default()

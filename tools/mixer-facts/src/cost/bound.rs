@@ -1,8 +1,8 @@
 //! The most instructions that a mix takes, whatever is asked: the sum of what the code does at most.
 //!
 //! In closed form that is least norm, an attempt at it next to the border, and one of two ways: the
-//! facets in several steps where they change the request, or the climb along the null space where
-//! they do not; after either the retreat, and what a reserve of yaw asks for. Else it is least norm and
+//! facets in several steps where they change the request, or yaw extended along the null space where
+//! they do not; after either yaw is bounded, and its reserve kept. Else it is least norm and
 //! the iterations of the interior point method: a product of their largest number and the
 //! cost of one (`cargo counts`). The tests hold the sum to the counts of whole mixers.
 
@@ -33,12 +33,12 @@ const FACETS: u32 = 18;
 /// The range of the null space, one unit.
 const NULL_RANGE: u32 = 40;
 
-/// How far yaw reaches: a call, and one unit in it. Calls at the start, in the climb, and in the
-/// retreat.
+/// How far yaw reaches: a call, and one unit in it. Calls at the start, where yaw is extended, and where it
+/// is bounded.
 const REACH: u32 = 35;
 const REACH_UNIT: u32 = 45;
-const CLIMB: u32 = 3;
-const RETREAT: u32 = 6;
+const EXTENDED: u32 = 3;
+const BOUNDED: u32 = 6;
 
 /// The outlines' top: one unit's knots, one knot passed, and one unit in that.
 const KNOTS: u32 = 75;
@@ -138,13 +138,17 @@ fn closed_form(compiled: &Compiled, table: &ClosedFormTable) -> Option<u32> {
     let walls = STEP + FACETS * (table.walls.len() + table.steep.len()) as u32;
     let moved = table.units.iter().filter(|unit| unit.null != 0.0).count() as u32;
     let top = |moved: u32| n * KNOTS + moved * Outline::KNOTS as u32 * (KNOT + n * KNOT_UNIT);
-    let climb = if moved == 0 { 0 } else { CLIMB * reach + top(moved) };
+    let extended = if moved == 0 {
+        0
+    } else {
+        EXTENDED * reach + top(moved)
+    };
     let reserve = if compiled.tables.priorities.yaw_reserve_nm > 0.0 {
         RESERVE_ROUNDS * (RESERVE_REACHES * reach + top(n) + n * NULL_RANGE)
     } else {
         0
     };
-    let ways = (Facets::STEPS * step).max(step + climb);
-    let found = walls + ways + n * NULL_RANGE + (1 + RETREAT) * reach + reserve + n * TORQUES;
+    let ways = (Facets::STEPS * step).max(step + extended);
+    let found = walls + ways + n * NULL_RANGE + (1 + BOUNDED) * reach + reserve + n * TORQUES;
     Some(per_mix(compiled) + n * (PER_UNIT + ATTEMPT_UNIT) + 2 * inverses + found)
 }

@@ -174,7 +174,7 @@ const POINTS: u32 = 20;
 
 impl Pulses {
     /// What it means that the vehicle's pulses of throttle 0 and 1 are not the bench's.
-    pub(crate) fn told(&self, bench_us: [f64; 2], map: Option<&PairMap>) -> Option<String> {
+    pub(crate) fn mismatch(&self, bench_us: [f64; 2], map: Option<&PairMap>) -> Option<String> {
         let [low, high] = bench_us;
         let on_bench =
             |throttle: f64| (self.us[0] + throttle * (self.us[1] - self.us[0]) - low) / (high - low);

@@ -12,7 +12,7 @@ const SAME_US: f64 = 2.0;
 ///
 /// # Errors
 /// A rotor that the stack leaves out.
-pub(super) fn told(rotors: &[Rotor], units: &[Unit]) -> Result<Vec<String>, String> {
+pub(super) fn notes(rotors: &[Rotor], units: &[Unit]) -> Result<Vec<String>, String> {
     let of = |channel: usize| rotors.iter().find(|rotor| rotor.channel == channel);
     let layer = |k: usize| {
         units

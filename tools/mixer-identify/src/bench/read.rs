@@ -46,7 +46,7 @@ impl fmt::Display for RefusedRow {
 }
 
 /// Refused rows in words, `most` of them one by one.
-pub fn refused_told<'a>(rows: impl Iterator<Item = &'a RefusedRow> + Clone, most: usize) -> Vec<String> {
+pub fn refusal_notes<'a>(rows: impl Iterator<Item = &'a RefusedRow> + Clone, most: usize) -> Vec<String> {
     let mut told: Vec<String> = rows
         .clone()
         .take(most)

@@ -139,7 +139,7 @@ impl Channel<'_> {
     }
 
     /// One sign per column.
-    fn told(&self, signs: [f64; 2]) -> Vec<f64> {
+    fn per_column(&self, signs: [f64; 2]) -> Vec<f64> {
         signs[..if self.total { 1 } else { 2 }].to_vec()
     }
 }
@@ -186,7 +186,7 @@ pub fn pair(
     };
     let sums = thrust.sums(signs, notes).into_iter().zip(torques).collect();
     let signs = Signs {
-        thrust: thrust.told(signs),
+        thrust: thrust.per_column(signs),
         torque: torque_signs,
         thrust_policy: policy_word(policy.thrust),
         torque_policy: policy_word(policy.torque),
@@ -239,7 +239,7 @@ fn pair_torque(
             );
         }
     }
-    Ok((torque.told(signs), sums))
+    Ok((torque.per_column(signs), sums))
 }
 
 /// Whether the torque follows the throttles at all, by half of its variance: in disorder its slopes say nothing.
@@ -272,13 +272,13 @@ fn no_magnitudes(file: &str, by_upper: f64, by_lower: f64) -> Result<(), Refusal
 pub fn single(
     columns: &Columns,
     rotor: usize,
-    own_columns: bool,
+    prefers_rotor_cell: bool,
     samples: &[Sample],
     policy: &SignPolicy,
 ) -> (Signs, Vec<(f64, f64)>) {
     // The whole where it is measured: a rotor at rest in the wake has a drag of its own.
     let whole = |columns: &Split<Option<Column>>| {
-        columns.whole.is_some() && !(own_columns && columns.rotors[rotor].is_some())
+        columns.whole.is_some() && !(prefers_rotor_cell && columns.rotors[rotor].is_some())
     };
     let [whole_thrust, whole_torque] = [&columns[Quantity::Thrust], &columns[Quantity::Torque]].map(whole);
     let of = |value: Split<f64>, whole: bool| if whole { value.whole } else { value.rotors[rotor] };

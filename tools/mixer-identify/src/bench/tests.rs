@@ -22,7 +22,7 @@ const G: f64 = 9.80665e-3;
 /// How `predict` reads a run of one rotor.
 fn one_rotor() -> Settings {
     let mut settings = Settings::default();
-    settings.preparation.own_columns = true;
+    settings.preparation.prefers_rotor_cell = true;
     settings
 }
 

@@ -16,7 +16,7 @@ use crate::fit::uncertainty::{Uncertainty, by_voltage};
 use crate::fit::voltage::Voltage;
 use crate::fit::wishes::FitOptions;
 use crate::fit::{Deficient, Design, Fit, fit, range};
-use crate::numbers::Told;
+use crate::numbers::Anomaly;
 use crate::refusal::Refusal;
 use crate::rotor::Alone;
 
@@ -74,7 +74,7 @@ pub struct Pair {
 
 /// Identifies the pair that the benches of [`BenchKind::Pair`] describe.
 ///
-/// `told` are the numbers of the files that are outside; of their shape a drift is the better reason.
+/// `anomalies` are the numbers of the files that are outside; of their shape a drift is the better reason.
 ///
 /// # Errors
 /// Files that do not give a map of one pair.
@@ -82,7 +82,7 @@ pub(crate) fn identify(
     benches: &[Bench],
     voltage: Option<&Voltage>,
     wishes: &FitOptions,
-    told: &[Told],
+    anomalies: &[Anomaly],
 ) -> Result<Pair, Refusal> {
     let benches: Vec<&Bench> = benches.iter().filter(|b| b.kind == BenchKind::Pair).collect();
     let files = names(&benches);
@@ -104,7 +104,7 @@ pub(crate) fn identify(
         Design::new(basis, &places(&points), throttle_box).map_err(|reason| deficient(&files, reason))?;
     let fits = channels(&points).map(|values| fit(&design, &values, throttle_box));
     one_pair(basis, &points, throttle_box, &fits, &mut warnings)?;
-    let explained = |refusal: Refusal| Told::explains(told, refusal);
+    let explained = |refusal: Refusal| Anomaly::explains(anomalies, refusal);
     doubts::unexplained(&files, fits.each_ref(), &mut warnings).map_err(explained)?;
     let [thrust, torque] = fits.each_ref().map(|fit| fit.coefficients.as_slice());
     let fold = fold::examine(basis, thrust, torque, throttle_box);
@@ -115,20 +115,26 @@ pub(crate) fn identify(
     // Other causes are judged by what a drift leaves: it looks like them.
     let drift = drift::examine(basis, &mut points, &mut warnings);
     let judged = fit(&design, &channels(&points)[1], throttle_box);
-    let drifts = |file: &str| drift.iter().any(|shown| shown.file == file && shown.is_told());
-    let explains = |told: &&Told| !(told.of_shape() && drifts(&told.file));
-    let told: Vec<&Told> = told.iter().filter(explains).collect();
+    let drifts = |file: &str| {
+        drift
+            .iter()
+            .any(|shown| shown.file == file && shown.is_significant())
+    };
+    let explains = |anomaly: &&Anomaly| !(anomaly.of_shape() && drifts(&anomaly.file));
+    let anomalies: Vec<&Anomaly> = anomalies.iter().filter(explains).collect();
     // A constant in the torque, and rows that stand out, look as exchanged rotors do.
     let (mut asked, by_hand) = (Vec::new(), benches.iter().all(|bench| bench.sides_by_hand));
-    let torque_drifts = drift.iter().any(|shown| shown.of == "torque" && shown.is_told());
+    let torque_drifts = drift
+        .iter()
+        .any(|shown| shown.of == "torque" && shown.is_significant());
     let asks = sign_is_found && !torque_drifts;
     let is_above = doubts::lower_is_stronger(basis, &judged, throttle_box, by_hand, asks, &mut asked);
-    let at_rest = told.iter().any(|told| told.is_torque_at_rest());
+    let at_rest = anomalies.iter().any(|anomaly| anomaly.is_torque_at_rest());
     if !at_rest && (wishes.robust || outliers.is_empty()) {
         warnings.extend(asked);
     }
     let lower_is_stronger = is_above && !at_rest;
-    warnings.extend(told.into_iter().map(Told::sentence));
+    warnings.extend(anomalies.into_iter().map(Anomaly::sentence));
     let mean_v = mean_voltage(points.iter().map(|p| p.point)).map(|(mean, _)| mean);
     let brought = normalised_to_v.zip(mean_v).zip(voltage);
     let brought = brought.map_or([0.0; 2], |((to, from), voltage)| {

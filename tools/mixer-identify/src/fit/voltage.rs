@@ -43,7 +43,7 @@ const WIDEST: f64 = 0.35;
 /// Throttles closer than this are one level.
 const LEVEL: f64 = 0.002;
 
-/// The dependence on voltage of both channels.
+/// The effect of the voltage on both channels.
 #[derive(Debug, Clone, Serialize)]
 pub struct Voltage {
     /// What the exponents come from.

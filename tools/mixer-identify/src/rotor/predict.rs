@@ -23,7 +23,7 @@ use crate::rotor::agreement::agreed;
 use crate::rotor::curve::Rotor;
 use crate::rotor::interaction::{CLOSED_LOOP, Interaction, OPEN_LOOP};
 use crate::rotor::posterior::{BETWEEN_SYSTEMS, Case, Posterior, ROW, fit, scaled};
-use crate::rotor::single::{Single, exponents_told};
+use crate::rotor::single::{Single, exponents_in_words};
 use crate::statistics::{greatest, rms};
 use crate::table::{commented, numbers, table};
 
@@ -317,7 +317,7 @@ fn other_voltage(run: &Single, map: &Bench) -> Option<String> {
             format!(
                 "{} is of {of_rows:.2} V and is brought to {of_run:.2} V by {}",
                 map.file,
-                exponents_told(run.exponents)
+                exponents_in_words(run.exponents)
             )
         }),
         (Some(of_run), None) => Some(format!(

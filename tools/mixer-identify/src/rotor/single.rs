@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use crate::bench::{Bench, BenchKind, Point, equal_commands, mean_voltage};
 use crate::fit::distinct_pairs;
-use crate::numbers::{self, Told};
+use crate::numbers::{self, Anomaly};
 use crate::refusal::Refusal;
 use crate::rotor::curve::{Curve, Rotor};
 use crate::statistics::{extent, rms};
@@ -95,8 +95,8 @@ impl Single {
                 ),
             ));
         }
-        let told = numbers::told(bench, known.diameter_m)?;
-        warnings.extend(told.iter().map(Told::sentence));
+        let anomalies = numbers::anomalies(bench, known.diameter_m)?;
+        warnings.extend(anomalies.iter().map(Anomaly::sentence));
         let run_v = known.run_v.or(mean_voltage(&bench.points).map(|(mean, _)| mean));
         let (points, voltage_v) = at_one_voltage(bench, known, run_v, warnings)?;
         let points = &points;
@@ -253,7 +253,7 @@ fn stand_in(file: &str, known: &RunFacts) -> Result<(f64, String), Refusal> {
 }
 
 /// The exponents of thrust and of torque in words.
-pub(crate) fn exponents_told([thrust, torque]: [f64; 2]) -> String {
+pub(crate) fn exponents_in_words([thrust, torque]: [f64; 2]) -> String {
     match thrust == torque {
         true => format!("an exponent of {thrust}"),
         false => format!("exponents of {thrust} for thrust and {torque} for torque"),
@@ -283,7 +283,7 @@ fn at_one_voltage(
         warnings.push(format!(
             "{} was run at {run_v:.2} V and is brought to {reference} V by {}",
             bench.file,
-            exponents_told(known.exponents)
+            exponents_in_words(known.exponents)
         ));
     }
     let at_reference = |p: &Point| {

@@ -165,7 +165,7 @@ pub struct Station {
     target_s: f64,
     thrust_setpoint: f64,
     texts: Texts,
-    told: String,
+    last_text: String,
 }
 
 /// Whether something periodic is due, next at `next_s`.
@@ -195,7 +195,7 @@ impl Station {
             target_s: 0.0,
             thrust_setpoint: f64::NAN,
             texts: Texts::default(),
-            told: String::new(),
+            last_text: String::new(),
         }
     }
 
@@ -220,9 +220,9 @@ impl Station {
                     return;
                 };
                 self.uses_gps |= text.ends_with(USES_GPS);
-                if !text.is_empty() && text != self.told {
+                if !text.is_empty() && text != self.last_text {
                     eprintln!("{time_s:8.2} s  {text}");
-                    self.told = text;
+                    self.last_text = text;
                 }
             }
             MavMessage::COMMAND_ACK(COMMAND_ACK_DATA { command, result, .. })
@@ -265,9 +265,9 @@ impl Station {
             Phase::Flying(_) => {}
         }
         if let Some(trouble) = self.trouble(world, time_s, since_s) {
-            let told = match self.told.as_str() {
+            let told = match self.last_text.as_str() {
                 "" => String::new(),
-                told => format!("; it said last: {told}"),
+                text => format!("; it said last: {text}"),
             };
             return Err(format!("{trouble}{told}"));
         }

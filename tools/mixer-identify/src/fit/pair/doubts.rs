@@ -99,18 +99,18 @@ pub(super) fn lower_is_stronger(
     let torque = Polynomial::of(basis, &torque.coefficients);
     let mean = mean_torque(|[u, l]| torque.at(u, l), [throttle.min, throttle.max]);
     let percent = 100.0 * mean;
-    let wake = Wake::told_by(mean);
+    let wake = Wake::of_torque(mean);
     match wake {
         Wake::Above if !by_hand => warnings.push(format!(
             "upper and lower rotor look exchanged, or the lower one is the stronger (more pitch, KV or diameter): at equal throttles \
              the one taken as lower takes more torque (mean {percent:+.1} % of the largest), though of equal rotors the one in the wake \
              takes less; exchanged columns are mended by --swap, right ones confirmed by --column upper=HEADER --column lower=HEADER"
         )),
-        Wake::Untold if sign_is_found && !by_hand => warnings.push(format!(
+        Wake::Unknown if sign_is_found && !by_hand => warnings.push(format!(
             "the torque does not tell which rotor is the upper one (mean {percent:+.1} % of the largest): make sure that the columns \
              are the right way round (--swap exchanges them)"
         )),
-        Wake::Above | Wake::Below | Wake::Untold => {}
+        Wake::Above | Wake::Below | Wake::Unknown => {}
     }
     by_hand && wake == Wake::Above
 }

@@ -16,11 +16,11 @@ use crate::bench::read::ROTOR_CELLS;
 use crate::fit::Design;
 use crate::statistics::{dot, greatest};
 
-/// Least |t| that is told, and the chance at which as large a one is noise of few rows.
+/// Least |t| that is significant, and the chance at which as large a one is noise of few rows.
 const CERTAIN: f64 = 5.0;
 const CHANCE: f64 = 1e-4;
 
-/// Least change over the run that is told, as a share of the greatest value.
+/// Least change over the run that matters, as a share of the greatest value.
 const MATTERS: f64 = 0.01;
 
 /// Least share of x that the throttles must leave unexplained: |x'|2 / |x|2.
@@ -48,7 +48,7 @@ pub struct Drift {
     /// Greatest change of any row, as a share of the greatest value.
     pub share: f64,
     /// Whether it is larger than chance and matters.
-    pub told: bool,
+    pub significant: bool,
 }
 
 impl Drift {
@@ -80,7 +80,7 @@ impl Drift {
                 change,
                 t,
                 share,
-                told: t.abs() > certain(freedom) && share > MATTERS,
+                significant: t.abs() > certain(freedom) && share > MATTERS,
             }
         });
         drifts.into_iter().max_by(|a, b| a.t.abs().total_cmp(&b.t.abs()))
@@ -150,14 +150,14 @@ pub struct Shown {
 }
 
 impl Shown {
-    /// Whether there is a drift to tell.
-    pub fn is_told(&self) -> bool {
-        self.drift.is_some_and(|drift| drift.told)
+    /// Whether there is a significant drift.
+    pub fn is_significant(&self) -> bool {
+        self.drift.is_some_and(|drift| drift.significant)
     }
 }
 
 /// Drifts of both channels and of each load cell in every file, a run of its own; takes those of the
-/// channels that are told off `points`, by which other causes are judged.
+/// channels that are significant off `points`, by which other causes are judged.
 pub(super) fn examine(basis: Basis, points: &mut [Placed], warnings: &mut Vec<String>) -> Vec<Shown> {
     let mut shown = Vec::new();
     for run in points.chunk_by_mut(|a, b| a.file == b.file) {
@@ -175,11 +175,11 @@ pub(super) fn examine(basis: Basis, points: &mut [Placed], warnings: &mut Vec<St
             }
             let told = all
                 .iter()
-                .filter_map(|(of, drift)| Some((of, drift.filter(|drift| drift.told)?)));
+                .filter_map(|(of, drift)| Some((of, drift.filter(|drift| drift.significant)?)));
             if let Some((of, drift)) = told.max_by(|(_, a), (_, b)| a.t.abs().total_cmp(&b.t.abs())) {
                 warnings.push(drift.in_words(file, of, unit));
             }
-            if let Some(drift) = whole.filter(|drift| drift.told) {
+            if let Some(drift) = whole.filter(|drift| drift.significant) {
                 both[quantity] = drift.taken_off(&both[quantity]);
             }
             let file = || file.to_owned();
@@ -225,15 +225,15 @@ mod tests {
         for levels in 5..=10 {
             let points = plan(levels, 0.1, 1.0);
             let clean = found(&points, |_, f| f).expect("a plan");
-            assert!(!clean.told, "{levels}: {clean:?}");
+            assert!(!clean.significant, "{levels}: {clean:?}");
             let offset = found(&points, |x, f| f + 1.5 * x).expect("a plan");
             assert!(
-                offset.told && (offset.change - 1.5).abs() < 0.2,
+                offset.significant && (offset.change - 1.5).abs() < 0.2,
                 "{levels}: {offset:?}"
             );
             let scale = found(&points, |x, f| f * (1.0 - 0.08 * x)).expect("a plan");
             assert_eq!(
-                (scale.told, scale.kind),
+                (scale.significant, scale.kind),
                 (true, DriftKind::Scale),
                 "{levels}: {scale:?}"
             );
@@ -250,7 +250,7 @@ mod tests {
             change,
             t: 9.0,
             share: 0.1,
-            told: true,
+            significant: true,
         };
         assert_eq!(
             drift(DriftKind::Offset, 1.0).taken_off(&[2.0, 3.0, 4.0]),

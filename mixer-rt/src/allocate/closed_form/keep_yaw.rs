@@ -1,4 +1,4 @@
-//! Thrust, roll and pitch given up for yaw: thrust for the reserve, all three for zero yaw.
+//! Thrust, roll and pitch given up to keep yaw: thrust for the reserve, all three for zero yaw.
 //!
 //! The thrusts found so far are drawn along straight lines towards others where yaw reaches further,
 //! no further than that needs:
@@ -34,7 +34,7 @@ impl ClosedForm<'_> {
     /// flight of the thrust `middle`, N, until it reaches it. Returns their z on the new lines and
     /// the least and most yaw there; writes the lines with each unit's yaw.
     #[inline(never)]
-    pub(super) fn retreat(
+    pub(super) fn bound_yaw(
         &self,
         lines: &mut [ThrustLine],
         sign: f32,
@@ -58,9 +58,9 @@ impl ClosedForm<'_> {
 
     /// Draws the thrusts, now at `z` where yaw reaches less than `needed` of the reserve, towards those
     /// of `roomy`, `[roll, pitch, thrust]` with the same roll and pitch, until it reaches it. Returns and
-    /// writes as [`retreat`](Self::retreat).
+    /// writes as [`bound_yaw`](Self::bound_yaw).
     #[inline(never)]
-    pub(super) fn keep(
+    pub(super) fn keep_reserve(
         &self,
         lines: &mut [ThrustLine],
         sign: f32,

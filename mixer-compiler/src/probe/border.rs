@@ -1,4 +1,4 @@
-//! Probes of the sides of the closed form, which wrenches alone reach only here and there.
+//! Probes of the border of the closed form, which wrenches alone reach only here and there.
 
 use mixer_rt::tables::ClosedForm;
 
@@ -20,7 +20,7 @@ const AREA: f64 = 5e-3;
 /// Points on the sides are attainable, and between them is the area that is stated, of units of this
 /// scale (largest thrust and torque, N and N m).
 pub(super) fn check(compiled: &Compiled, scale: [f64; 2]) -> Result<(), String> {
-    let (Some(table), Ok(lost)) = (&compiled.tables.closed_form, compiled.lost_between_sides) else {
+    let (Some(table), Ok(lost)) = (&compiled.tables.closed_form, compiled.lost_outside_border) else {
         return Ok(());
     };
     let area = twice_area(&compiled.pair.scaled_border(SAMPLES));

@@ -1,14 +1,30 @@
-//! z where yaw reaches furthest.
+//! z moved towards where yaw reaches furthest.
 //!
-//! The lines run through the null space, or in a retreat in any direction that keeps roll and pitch.
+//! The lines run through the null space, or for the reserve in any direction that keeps roll and pitch.
 //! By the coarse sides Y(z), the furthest yaw, is a sum of concave functions of straight lines.
 //! From the start z goes in the direction in which Y grows, from knot to knot, until it does not:
 //! at most all units' knots, each met once. The knots move with the request continuously and the
 //! slopes between them are constants, so the end does not jump; where Y is level, z stays at the
 //! nearest point that is best.
+//!
+//! Where z has room and the requested yaw is out of range at the start, z moves towards the z of
+//! the largest yaw, by the part `(yaw - Y(start)) / (Y(top) - Y(start))` of the way. This makes the
+//! thrusts a Lipschitz function of the request; moving z just far enough would not. Y is nearly
+//! concave: where that part is not enough, a second step of twice the length follows.
 
+use core::hint::black_box;
+
+use super::thrusts::furthest;
 use super::{Border, ClosedForm, MOST_CLOSED_FORM_UNITS, Outline, ThrustLine};
-use crate::rolled;
+use crate::{divisor, rolled};
+
+/// Most steps towards the largest yaw. The second is twice as long as a straight line asks for.
+const EXTENSIONS: u32 = 2;
+
+/// Gain of yaw, in units of `yaw_rounding_nm`, from which z moves to the top in full. For a smaller
+/// gain it moves a part of the way, so that z does not jump where the gain vanishes. That costs at
+/// most a quarter of this gain, 0.025 % of the authority in yaw.
+const GAIN: f32 = 100.0;
 
 /// The knots of one unit's side that are ahead.
 #[derive(Clone, Copy)]
@@ -54,6 +70,50 @@ impl Border<'_> {
 }
 
 impl ClosedForm<'_> {
+    /// Moves z from a point where yaw does not reach `wanted` towards where it reaches furthest
+    /// within `range`. Returns z and the least and most yaw there, and leaves what each unit gives
+    /// of it.
+    #[inline(always)]
+    pub(super) fn extend_yaw(
+        &self,
+        lines: &mut [ThrustLine],
+        sign: f32,
+        (mut z, mut reach): (f32, [f32; 2]),
+        range: [f32; 2],
+        wanted: f32,
+    ) -> (f32, [f32; 2]) {
+        let top = self.top(lines, sign, z, range);
+        if top == z {
+            return (z, reach);
+        }
+        let at_top = self.reach(lines, top);
+        let most = furthest(at_top, sign);
+        let whole = GAIN * self.yaw_rounding_nm;
+        if most <= wanted && most - furthest(reach, sign) >= whole {
+            return (top, at_top);
+        }
+        let mut ahead = 1.0;
+        for _ in 0..black_box(EXTENSIONS) {
+            let here = furthest(reach, sign);
+            let gain = most - here;
+            let mut part = if gain > 0.0 {
+                ahead * (wanted - here) / divisor(gain)
+            } else {
+                0.0
+            };
+            part = if part < 1.0 { part } else { 1.0 };
+            part *= if gain < whole { gain / whole } else { 1.0 };
+            z += part * (top - z);
+            reach = self.reach(lines, z);
+            let here = furthest(reach, sign);
+            if here >= wanted || here >= most {
+                break;
+            }
+            ahead = 2.0;
+        }
+        (z, reach)
+    }
+
     /// z within `[low, high]` where yaw of the sign `sign` reaches furthest by the coarse sides,
     /// seen from `start`.
     #[inline(never)]
@@ -108,7 +168,7 @@ impl ClosedForm<'_> {
         let level = self.yaw_rounding_nm / self.thrust_n[1];
         let mut way = 0.0;
         while growth > level {
-            core::hint::black_box(());
+            black_box(());
             way = end;
             let mut nearest = None;
             for ahead in rolled(&mut ahead) {
