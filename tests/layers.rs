@@ -53,9 +53,23 @@ fn files(folder: &Path, module: &Module, found: &mut BTreeMap<Module, syn::File>
             files(&path, &inner, found);
         } else if path.extension().is_some_and(|extension| extension == "rs") {
             let text = fs::read_to_string(&path).expect("a source file");
-            let file = syn::parse_file(&text).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+            let mut file =
+                syn::parse_file(&text).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+            file.items = file.items.into_iter().flat_map(opened).collect();
             found.insert(inner, file);
         }
+    }
+}
+
+/// The items of an inline module with a path, whose modules are files of the folder around it.
+fn opened(item: Item) -> Vec<Item> {
+    match item {
+        Item::Mod(ItemMod {
+            attrs,
+            content: Some((_, items)),
+            ..
+        }) if attrs.iter().any(|attribute| attribute.path().is_ident("path")) => items,
+        item => vec![item],
     }
 }
 

@@ -8,58 +8,38 @@
 //! see the rest, which changes without notice.
 #![cfg_attr(not(feature = "unstable"), allow(dead_code, unreachable_pub, unused_imports))]
 
-#[cfg(not(feature = "unstable"))]
-mod airframe;
-#[cfg(feature = "unstable")]
-pub mod airframe;
+/// Modules that the feature `unstable` shows.
+#[path = "."]
+mod modules {
+    pub mod airframe;
+    pub mod atmosphere;
+    pub mod diagnostic;
+    pub mod flywheel;
+    pub mod hover;
+    pub mod model;
+    pub mod power;
+    pub mod quantity;
+    pub mod spec;
+    pub mod tables;
+}
+
 mod allocation;
-#[cfg(not(feature = "unstable"))]
-mod atmosphere;
-#[cfg(feature = "unstable")]
-pub mod atmosphere;
 mod bounds;
 #[cfg(feature = "format")]
 pub mod build_script;
 mod compiled;
-#[cfg(not(feature = "unstable"))]
-mod diagnostic;
-#[cfg(feature = "unstable")]
-pub mod diagnostic;
 mod emit;
-#[cfg(not(feature = "unstable"))]
-mod flywheel;
-#[cfg(feature = "unstable")]
-pub mod flywheel;
-#[cfg(not(feature = "unstable"))]
-mod hover;
-#[cfg(feature = "unstable")]
-pub mod hover;
 mod inverse;
-#[cfg(not(feature = "unstable"))]
-mod model;
-#[cfg(feature = "unstable")]
-pub mod model;
 mod plausible;
-#[cfg(not(feature = "unstable"))]
-mod power;
-#[cfg(feature = "unstable")]
-pub mod power;
 mod probe;
 mod proof;
-#[cfg(not(feature = "unstable"))]
-mod quantity;
-#[cfg(feature = "unstable")]
-pub mod quantity;
 mod scale;
 mod selection;
+
 #[cfg(not(feature = "unstable"))]
-mod spec;
+use modules::*;
 #[cfg(feature = "unstable")]
-pub mod spec;
-#[cfg(not(feature = "unstable"))]
-mod tables;
-#[cfg(feature = "unstable")]
-pub mod tables;
+pub use modules::*;
 
 use airframe::Airframe;
 use allocation::{closed_form, thrust_range};
@@ -71,10 +51,10 @@ use proc_macro2::TokenStream;
 use selection::Selected;
 use tables::{MixerTables, Parts};
 
+pub use crate::diagnostic::source::Source;
+pub use crate::diagnostic::{Code, Diagnostic, Diagnostics, Record, Severity};
 pub use compiled::Compiled;
 use compiled::OfPair;
-pub use diagnostic::source::Source;
-pub use diagnostic::{Code, Diagnostic, Diagnostics, Record, Severity};
 #[cfg(feature = "unstable")]
 pub use {
     inverse::evaluator,
