@@ -6,7 +6,9 @@
 mod flown;
 mod tables;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+
+use csv::StringRecord;
 
 use crate::root;
 
@@ -58,6 +60,16 @@ pub fn filled(page: &str, table: &Table) -> Result<String, String> {
 }
 
 const END: &str = "<!-- end -->";
+
+/// Header and rows of a file in `tests/measurements/`, whose comments begin with `#`.
+fn measured(path: &Path) -> Result<(StringRecord, Vec<StringRecord>), String> {
+    let fault = |error: csv::Error| format!("{}: {error}", path.display());
+    let mut builder = csv::ReaderBuilder::new();
+    let mut reader = builder.comment(Some(b'#')).from_path(path).map_err(fault)?;
+    let header = reader.headers().map_err(fault)?.clone();
+    let rows: Result<_, _> = reader.into_records().collect();
+    Ok((header, rows.map_err(fault)?))
+}
 
 /// All pages in Markdown under the project's folder, sorted; none of build folders.
 ///

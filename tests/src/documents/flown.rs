@@ -1,5 +1,6 @@
 //! The flights of the first page, out of the tables of flights.
 
+use super::measured;
 use super::tables::markdown;
 use crate::root;
 
@@ -59,22 +60,14 @@ const ROTOR_OUT: [Figure; 2] = [
 /// The cell of a figure's column in the row that holds its words and these; `None` where there is no such row.
 fn cell((_, file, words, column): Figure, more: &[&str]) -> Result<Option<String>, String> {
     let path = root().join("tests/measurements/flights").join(file);
-    let fault = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
-    let mut reader = csv::ReaderBuilder::new()
-        .comment(Some(b'#'))
-        .from_path(&path)
-        .map_err(|error| fault(&error))?;
-    let header = reader.headers().map_err(|error| fault(&error))?;
+    let (header, rows) = measured(&path)?;
     let at = header.iter().position(|name| name == column);
-    let at = at.ok_or_else(|| fault(&format!("no column {column}")))?;
-    for row in reader.records() {
-        let row = row.map_err(|error| fault(&error))?;
-        let mut words = words.iter().chain(more);
-        if words.all(|word| row.iter().any(|cell| cell == *word)) {
-            return Ok(row.get(at).map(str::to_owned));
-        }
-    }
-    Ok(None)
+    let at = at.ok_or_else(|| format!("{}: no column {column}", path.display()))?;
+    let words = words.iter().chain(more);
+    let row = rows
+        .iter()
+        .find(|row| words.clone().all(|word| row.iter().any(|cell| cell == *word)));
+    Ok(row.and_then(|row| row.get(at)).map(str::to_owned))
 }
 
 /// What PX4's allocator, as it comes and fitted, and this mixer hold in flight.

@@ -1,5 +1,6 @@
 //! The tables, in Markdown.
 
+use csv::StringRecord;
 use isolated_rotors::IsolatedTables;
 use mixer_compiler::airframe::KEYS;
 use mixer_compiler::atmosphere::{self, density_at, pressure_at};
@@ -11,7 +12,7 @@ use mixer_files::report::comparison::{Comparison, YawResponse, throttles};
 use mixer_files::report::study::Study;
 use mixer_rt::Wrench;
 
-use super::Table;
+use super::{Table, measured};
 use crate::{airframes, allocators, golden, root, thin_air};
 
 /// The airframe of the paper.
@@ -246,25 +247,18 @@ pub(super) fn static_comparison() -> Result<String, String> {
     Ok(markdown(&header, &rows))
 }
 
-/// Rows of a file in `tests/measurements/` without their header, split at commas.
-fn measured(path: &std::path::Path) -> Result<Vec<Vec<String>>, String> {
-    let text = std::fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))?;
-    let lines = text.lines().skip(1);
-    Ok(lines
-        .map(|line| line.split(',').map(str::to_owned).collect())
-        .collect())
-}
-
 /// Allocators on attainable wrenches.
 pub(super) fn allocators() -> Result<String, String> {
-    let rows: Vec<Vec<String>> = measured(&allocators::file())?
-        .into_iter()
-        .map(|row| {
-            let (names, percent) = row.split_at(2.min(row.len()));
-            let percent = percent.iter().map(|cell| format!("{cell} %"));
-            names.iter().cloned().chain(percent).collect()
-        })
-        .collect();
+    let (_, rows) = measured(&allocators::file())?;
+    let percent = |(k, cell): (usize, &str)| {
+        if k < 2 {
+            cell.to_owned()
+        } else {
+            format!("{cell} %")
+        }
+    };
+    let cells = |row: &StringRecord| row.iter().enumerate().map(percent).collect();
+    let rows: Vec<Vec<String>> = rows.iter().map(cells).collect();
     Ok(markdown(
         &[
             "frame",
@@ -402,32 +396,18 @@ struct Flight {
 
 fn flights() -> Result<Vec<Flight>, String> {
     let path = root().join("tests/measurements/flight.csv");
-    measured(&path)?
-        .into_iter()
-        .map(|row| {
-            let fault = || format!("{}: not a flight: {row:?}", path.display());
-            // A scenario's name has commas, and quotes around it.
-            let line = row.join(",");
-            let (scenario, rest) = line
-                .strip_prefix('"')
-                .and_then(|line| line.split_once("\","))
-                .or_else(|| line.split_once(','))
-                .ok_or_else(fault)?;
-            let cells: Vec<&str> = rest.split(',').collect();
-            let [seed, mixer, figures @ ..] = &cells[..] else {
-                return Err(fault());
-            };
-            Ok(Flight {
-                scenario: scenario.to_owned(),
-                seed: (*seed).to_owned(),
-                mixer: (*mixer).to_owned(),
-                figures: figures
-                    .iter()
-                    .map(|cell| cell.parse().map_err(|_| fault()))
-                    .collect::<Result<_, _>>()?,
-            })
+    let flight = |row: &StringRecord| {
+        let cells = row.deserialize(None);
+        let (scenario, seed, mixer, figures) =
+            cells.map_err(|error| format!("{}: {error}", path.display()))?;
+        Ok(Flight {
+            scenario,
+            seed,
+            mixer,
+            figures,
         })
-        .collect()
+    };
+    measured(&path)?.1.iter().map(flight).collect()
 }
 
 /// Mean and standard deviation, with these decimals.
