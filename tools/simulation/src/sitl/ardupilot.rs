@@ -27,6 +27,16 @@ const WAIT: Duration = Duration::from_millis(100);
 const PORT: u16 = 9002;
 const LINK: u16 = 5760;
 
+/// Guided mode of Copter. A thrust setpoint of 0.5 is no climb.
+const STACK: Stack = Stack {
+    guided: 4,
+    mode_bit: 0,
+    has_position: Some("is using GPS"),
+    is_sent_up: true,
+    level_thrust: Some(0.5),
+    battery: None,
+};
+
 /// The port that ArduPilot sends to, and its pilot.
 ///
 /// # Errors
@@ -39,7 +49,7 @@ pub fn open(arguments: &Arguments) -> Result<Port, String> {
     Ok(Port {
         name: "ArduPilot on UDP",
         address: socket.local_addr(),
-        pilot: Box::new(Station::new(Stack::Ardupilot, link, arguments)),
+        pilot: Box::new(Station::new(&STACK, link, arguments)),
         serve: Box::new(move |flight, sensors| serve(&socket, flight, sensors, pulses)),
     })
 }

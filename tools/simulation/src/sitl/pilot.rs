@@ -11,16 +11,23 @@ use super::arguments::Arguments;
 use super::link::Link;
 use super::messages::{Texts, attitude, heartbeat, position};
 use super::plan::{Manoeuvre, Plan, Target};
-use super::px4::battery::{BATTERY, battery};
 use super::world::World;
 
-/// The flight stack.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Stack {
-    /// PX4
-    Px4,
-    /// ArduPilot's Copter
-    Ardupilot,
+/// How a flight stack is flown by MAVLink.
+#[derive(Debug)]
+pub struct Stack {
+    /// The mode in which it takes targets.
+    pub guided: u32,
+    /// The lowest bit of modes in `HEARTBEAT`.
+    pub mode_bit: u32,
+    /// How it says that its estimator has a position, where it would arm before.
+    pub has_position: Option<&'static str>,
+    /// Whether it takes off by a command, which ends with the first target; else by targets.
+    pub is_sent_up: bool,
+    /// Thrust setpoint of a level step in roll; that of hover where there is none.
+    pub level_thrust: Option<f32>,
+    /// The battery's component and message, where it simulates the motors' telemetry itself and has neither of the plant.
+    pub battery: Option<(u8, fn(&World) -> MavMessage)>,
 }
 
 /// Height of the manoeuvre, m.
@@ -32,12 +39,11 @@ const COMMAND_S: f64 = 1.0;
 const BATTERY_S: f64 = 0.05;
 const TARGET_S: f64 = 0.02;
 
-/// Setpoints that come before PX4 is asked to change to Offboard, s.
+/// Setpoints that come before the mode is asked for, s; PX4 needs some for Offboard.
 const TARGETS_FIRST_S: f64 = 1.0;
 
-/// How ArduPilot says that its estimator has a position; it would arm before. Longest wait for it, s.
-const USES_GPS: &str = "is using GPS";
-const GPS_S: f64 = 60.0;
+/// Longest wait for a position, s.
+const POSITION_S: f64 = 60.0;
 
 /// Longest time until the vehicle hovers, s.
 const PATIENCE_S: f64 = 120.0;
@@ -50,24 +56,10 @@ const STILL_S: f64 = 3.0;
 const ATTITUDE_TARGET: f32 = 83.0;
 const ATTITUDE_TARGET_US: f32 = 20_000.0;
 
-/// Guided mode of ArduPilot's Copter, Offboard of PX4.
-const GUIDED: u32 = 4;
-const OFFBOARD: u32 = 6;
-
 /// `FAILURE_UNIT_SYSTEM_MOTOR`, `FAILURE_TYPE_STUCK`: PX4's simulator then leaves out the motor's
 /// telemetry, which it makes up itself.
 const MOTOR: f32 = 101.0;
 const STUCK: f32 = 2.0;
-
-impl Stack {
-    /// The mode in which it takes targets.
-    fn guided(self) -> u32 {
-        match self {
-            Stack::Px4 => OFFBOARD,
-            Stack::Ardupilot => GUIDED,
-        }
-    }
-}
 
 /// Where the flight is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -149,14 +141,14 @@ pub trait Pilot: fmt::Debug {
 /// A pilot by MAVLink.
 #[derive(Debug)]
 pub struct Station {
-    stack: Stack,
+    stack: &'static Stack,
     link: Link,
     plan: Option<Plan>,
     phase: Phase,
     /// System and component of the stack, and since when they are known, s.
     peer: Option<([u8; 2], f64)>,
     armed: bool,
-    uses_gps: bool,
+    has_position: bool,
     mode: u32,
     /// When something periodic is due next, s.
     heartbeat_s: f64,
@@ -179,7 +171,7 @@ fn is_due(next_s: &mut f64, time_s: f64, period_s: f64) -> bool {
 
 impl Station {
     /// A pilot on a link.
-    pub fn new(stack: Stack, link: Link, arguments: &Arguments) -> Station {
+    pub fn new(stack: &'static Stack, link: Link, arguments: &Arguments) -> Station {
         Station {
             stack,
             link,
@@ -187,7 +179,7 @@ impl Station {
             phase: Phase::Arming,
             peer: None,
             armed: false,
-            uses_gps: false,
+            has_position: stack.has_position.is_none(),
             mode: 0,
             heartbeat_s: 0.0,
             command_s: 0.0,
@@ -207,10 +199,7 @@ impl Station {
             {
                 self.peer.get_or_insert(([system, component], time_s));
                 self.armed = beat.base_mode.contains(MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED);
-                self.mode = match self.stack {
-                    Stack::Px4 => (beat.custom_mode >> 16) & 0xff,
-                    Stack::Ardupilot => beat.custom_mode,
-                };
+                self.mode = (beat.custom_mode >> self.stack.mode_bit) & 0xff;
             }
             MavMessage::ATTITUDE_TARGET(ATTITUDE_TARGET_DATA { thrust, .. }) => {
                 self.thrust_setpoint = thrust.into();
@@ -219,7 +208,7 @@ impl Station {
                 let Some(text) = self.texts.join(&text) else {
                     return;
                 };
-                self.uses_gps |= text.ends_with(USES_GPS);
+                self.has_position |= self.stack.has_position.is_some_and(|words| text.ends_with(words));
                 if !text.is_empty() && text != self.last_text {
                     eprintln!("{time_s:8.2} s  {text}");
                     self.last_text = text;
@@ -237,13 +226,14 @@ impl Station {
     }
 
     fn fly(&mut self, world: &World, peer: [u8; 2], time_s: f64, since_s: f64) -> Result<(), String> {
-        let wait_s = match self.stack {
-            Stack::Ardupilot if !self.uses_gps => GPS_S,
-            _ => TARGETS_FIRST_S,
+        let wait_s = if self.has_position {
+            TARGETS_FIRST_S
+        } else {
+            POSITION_S
         };
         match self.phase {
             Phase::Arming => {
-                if self.armed && self.mode == self.stack.guided() {
+                if self.armed && self.mode == self.stack.guided {
                     self.phase = Phase::Climbing(None);
                 } else if time_s > since_s + wait_s && is_due(&mut self.command_s, time_s, COMMAND_S) {
                     self.arm(peer);
@@ -252,13 +242,11 @@ impl Station {
             Phase::Climbing(still_since_s) => {
                 self.phase = climbed(still_since_s, 0.5 * HEIGHT_M, world);
                 if world.on_ground && is_due(&mut self.command_s, time_s, COMMAND_S) {
-                    match self.stack {
-                        _ if !self.armed => self.phase = Phase::Arming,
-                        Stack::Ardupilot => {
-                            let parameters = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, HEIGHT_M as f32];
-                            self.command(peer, MavCmd::MAV_CMD_NAV_TAKEOFF, parameters);
-                        }
-                        Stack::Px4 => {}
+                    if !self.armed {
+                        self.phase = Phase::Arming;
+                    } else if self.stack.is_sent_up {
+                        let parameters = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, HEIGHT_M as f32];
+                        self.command(peer, MavCmd::MAV_CMD_NAV_TAKEOFF, parameters);
                     }
                 }
             }
@@ -271,16 +259,11 @@ impl Station {
             };
             return Err(format!("{trouble}{told}"));
         }
-        // ArduPilot's take-off ends with the first of them.
-        let takes_targets = self.stack == Stack::Px4 || matches!(self.phase, Phase::Flying(_));
+        let takes_targets = !self.stack.is_sent_up || matches!(self.phase, Phase::Flying(_));
         if takes_targets && is_due(&mut self.target_s, time_s, TARGET_S) {
             let target = self.wanted(time_s).unwrap_or_default();
-            // In roll PX4 keeps the thrust of the hover; ArduPilot's 0.5 is no climb.
-            let thrust = match self.stack {
-                _ if target.is_climb => 1.0,
-                Stack::Px4 => self.thrust_setpoint as f32,
-                Stack::Ardupilot => 0.5,
-            };
+            let level = self.stack.level_thrust.unwrap_or(self.thrust_setpoint as f32);
+            let thrust = if target.is_climb { 1.0 } else { level };
             self.link.send(&if target.roll_deg == 0.0 && !target.is_climb {
                 position(target, HEIGHT_M, peer, time_s)
             } else {
@@ -297,7 +280,7 @@ impl Station {
             let is_late = time_s - since_s > PATIENCE_S;
             return is_late.then(|| format!("no hover within {PATIENCE_S} s, the stack is {state}"));
         };
-        let guided = self.stack.guided();
+        let guided = self.stack.guided;
         let what = if !self.armed {
             "the stack has disarmed".to_owned()
         } else if self.mode != guided {
@@ -317,7 +300,7 @@ impl Station {
 
     /// Asks for the mode, then for armed motors.
     fn arm(&mut self, peer: [u8; 2]) {
-        let mode = self.stack.guided();
+        let mode = self.stack.guided;
         if self.mode == mode {
             self.command(peer, MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, [1.0]);
         } else {
@@ -363,8 +346,10 @@ impl Pilot for Station {
             let parameters = [ATTITUDE_TARGET, ATTITUDE_TARGET_US];
             self.command(peer, MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL, parameters);
         }
-        if self.stack == Stack::Px4 && is_due(&mut self.battery_s, time_s, BATTERY_S) {
-            self.link.send_as([peer[0], BATTERY], &battery(world));
+        if let Some((component, battery)) = self.stack.battery
+            && is_due(&mut self.battery_s, time_s, BATTERY_S)
+        {
+            self.link.send_as([peer[0], component], &battery(world));
         }
         if self.plan.is_none() {
             return Ok(());
@@ -388,9 +373,8 @@ impl Pilot for Station {
         self.link.connect();
     }
 
-    /// PX4's telemetry makes up the motors' currents.
     fn inject(&mut self, output: usize) {
-        if let (Stack::Px4, Some((peer, _))) = (self.stack, self.peer) {
+        if let (Some(_), Some((peer, _))) = (self.stack.battery, self.peer) {
             let motor = output as f32 + 1.0;
             self.command(peer, MavCmd::MAV_CMD_INJECT_FAILURE, [MOTOR, STUCK, motor]);
         }

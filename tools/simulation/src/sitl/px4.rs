@@ -13,6 +13,7 @@ use std::time::{Duration, Instant};
 
 use mavlink::dialects::common::MavMessage;
 
+use self::battery::{BATTERY, battery};
 use self::packets::{fix, is_armed, measured, throttles, truth};
 use super::arguments::Arguments;
 use super::flight::{End, Flight, Port};
@@ -45,6 +46,16 @@ const SIMULATOR: [u8; 2] = [1, 51];
 const PORT: u16 = 4560;
 const LINK: u16 = 14540;
 
+/// Offboard, in which PX4 takes off by targets.
+const STACK: Stack = Stack {
+    guided: 6,
+    mode_bit: 16,
+    has_position: None,
+    is_sent_up: false,
+    level_thrust: None,
+    battery: Some((BATTERY, battery)),
+};
+
 /// The port that PX4 connects to, and its pilot.
 ///
 /// # Errors
@@ -58,7 +69,7 @@ pub fn open(arguments: &Arguments) -> Result<Port, String> {
     Ok(Port {
         name: "PX4 on TCP",
         address: listener.local_addr(),
-        pilot: Box::new(Station::new(Stack::Px4, link, arguments)),
+        pilot: Box::new(Station::new(&STACK, link, arguments)),
         serve: Box::new(move |flight, sensors| serve(&listener, flight, sensors)),
     })
 }

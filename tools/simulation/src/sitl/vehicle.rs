@@ -22,6 +22,11 @@ pub const MOST_ROTORS: usize = 32;
 /// A throttle per channel.
 pub type Throttles = SVector<f64, MOST_ROTORS>;
 
+/// The throttle, 0 to 1, of a pulse between those of throttle 0 and 1, us.
+pub fn throttle(pulse_us: f64, [low, high]: [f64; 2]) -> f64 {
+    ((pulse_us - low) / (high - low)).clamp(0.0, 1.0)
+}
+
 /// Share of the mass at the units where the file has no inertia: so the paper's X8 has its own
 /// within 8 %.
 const MASS_AT_UNITS: f64 = 0.25;

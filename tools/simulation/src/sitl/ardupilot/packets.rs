@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use crate::sitl::sensors::Sensors;
-use crate::sitl::vehicle::{MOST_ROTORS, Throttles};
+use crate::sitl::vehicle::{MOST_ROTORS, Throttles, throttle};
 use crate::sitl::world::World;
 
 /// First two bytes of a packet of 16, and of 32 channels.
@@ -28,7 +28,7 @@ pub struct Packet {
 }
 
 /// A packet with pulse widths between those of throttle 0 and 1, us; `None` of anything else.
-pub fn packet(bytes: &[u8], [low, high]: [f64; 2]) -> Option<Packet> {
+pub fn packet(bytes: &[u8], pulses: [f64; 2]) -> Option<Packet> {
     let word = |at: usize| Some(u16::from_le_bytes(bytes.get(at..at + 2)?.try_into().ok()?));
     let channels = match word(0)? {
         MAGIC_16 => 16,
@@ -42,7 +42,7 @@ pub fn packet(bytes: &[u8], [low, high]: [f64; 2]) -> Option<Packet> {
     for channel in 0..channels.min(MOST_ROTORS) {
         let pulse = f64::from(word(HEAD + 2 * channel)?);
         // 0 is no pulse.
-        throttles[channel] = ((pulse - low) / (high - low)).clamp(0.0, 1.0);
+        throttles[channel] = throttle(pulse, pulses);
     }
     Some(Packet {
         rate_hz: word(2).filter(|rate_hz| RATE_HZ.contains(rate_hz))?,

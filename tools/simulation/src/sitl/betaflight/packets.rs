@@ -2,16 +2,16 @@
 
 use crate::sitl::pilot::Channels;
 use crate::sitl::sensors::Sensors;
-use crate::sitl::vehicle::{MOST_ROTORS, Throttles};
+use crate::sitl::vehicle::{MOST_ROTORS, Throttles, throttle};
 use crate::sitl::world::World;
 
 /// `servo_packet_raw`: their number, two bytes between, and single-precision pulse widths, us.
-pub fn motors(bytes: &[u8], [low, high]: [f64; 2]) -> Option<Throttles> {
+pub fn motors(bytes: &[u8], range: [f64; 2]) -> Option<Throttles> {
     let pulses = bytes.get(4..)?.chunks_exact(4);
     let mut throttles = Throttles::zeros();
-    for (throttle, pulse) in throttles.iter_mut().zip(pulses).take(MOST_ROTORS) {
-        let pulse = f64::from(f32::from_le_bytes(pulse.try_into().ok()?));
-        *throttle = ((pulse - low) / (high - low)).clamp(0.0, 1.0);
+    for (channel, pulse) in throttles.iter_mut().zip(pulses).take(MOST_ROTORS) {
+        let pulse = f32::from_le_bytes(pulse.try_into().ok()?);
+        *channel = throttle(pulse.into(), range);
     }
     Some(throttles)
 }
