@@ -27,7 +27,7 @@ pub enum Frame {
 }
 
 impl Frame {
-    /// All, each with its word on the command line and what it is.
+    /// All in their order, each with its word on the command line and what it is.
     #[rustfmt::skip]
     pub const ALL: [(Frame, &'static str, &'static str); 5] = [
         (Frame::X8, "x8", "Four pairs in an X"),
@@ -106,54 +106,38 @@ struct Shape {
     units: usize,
     first_angle_deg: f64,
     first: &'static str,
-    spins: Spins,
-    axes: Option<&'static str>,
+    /// Whether half of the upper rotors turn each way, so that they can cancel torques.
+    alternates: bool,
     description: &'static str,
-}
-
-/// How the upper rotors turn.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Spins {
-    /// Half of them each way, so that they can cancel torques.
-    Alternate,
-    Alike,
+    /// A line on the axes that are served; empty where all are.
+    axes: &'static str,
 }
 
 impl Frame {
+    #[rustfmt::skip]
     fn shape(self) -> Shape {
-        let shape = |units, first_angle_deg, first, spins, axes, description| Shape {
-            units,
-            first_angle_deg,
-            first,
-            spins,
-            axes,
-            description,
+        let (units, first_angle_deg, first, alternates, description, axes) = match self {
+            Frame::X8 => (4, 45.0, "front right", true, "X8: four coaxial pairs", ""),
+            Frame::Y6 => (3, 60.0, "front right", false, "Y6: three coaxial pairs", ""),
+            Frame::X12 => (6, 30.0, "front right", true, "X12: six coaxial pairs", ""),
+            Frame::Bicopter => (
+                2, 90.0, "right", true, "Two coaxial pairs abreast, pitch left to servos or a tail",
+                "axes = [\"roll\", \"yaw\", \"thrust\"]  # two units have no lever arm in pitch\n",
+            ),
+            Frame::Single => (
+                1, 0.0, "", false, "One coaxial pair on a stand",
+                "axes = [\"yaw\", \"thrust\"]          # one unit has no lever arms\n",
+            ),
         };
-        use Spins::{Alike, Alternate};
-        match self {
-            Frame::X8 => shape(4, 45.0, "front right", Alternate, None, "X8: four coaxial pairs"),
-            Frame::Y6 => shape(3, 60.0, "front right", Alike, None, "Y6: three coaxial pairs"),
-            Frame::X12 => shape(6, 30.0, "front right", Alternate, None, "X12: six coaxial pairs"),
-            Frame::Bicopter => {
-                let axes = "axes = [\"roll\", \"yaw\", \"thrust\"]  # two units have no lever arm in pitch";
-                let description = "Two coaxial pairs abreast, pitch left to servos or a tail";
-                shape(2, 90.0, "right", Alternate, Some(axes), description)
-            }
-            Frame::Single => {
-                let axes = "axes = [\"yaw\", \"thrust\"]          # one unit has no lever arms";
-                shape(1, 0.0, "", Alike, Some(axes), "One coaxial pair on a stand")
-            }
-        }
+        Shape { units, first_angle_deg, first, alternates, description, axes }
     }
 }
 
 /// The lines of the yaw reserve at the end of `[allocation]`, where the airframe so far compiles
 /// and has yaw to keep.
 fn yaw_reserve(text: &str) -> String {
-    let Ok(compiled) = mixer_compiler::compile(&Source::new("new.toml", text)) else {
-        return String::new();
-    };
-    let Some(reserve) = hover::yaw_reserve(&compiled) else {
+    let compiled = mixer_compiler::compile(&Source::new("new.toml", text));
+    let Some(reserve) = compiled.ok().as_ref().and_then(hover::yaw_reserve) else {
         return String::new();
     };
     let line = format!("yaw_reserve_nm = {}", rounded(reserve));
@@ -181,7 +165,7 @@ impl NewFrame<'_> {
         let Shape {
             description,
             axes,
-            spins,
+            alternates,
             ..
         } = self.frame.shape();
         let mut text = format!(
@@ -210,16 +194,14 @@ impl NewFrame<'_> {
             }
             _ => "airmode = \"disabled\"                   # or \"roll-pitch\": the thrust may rise for roll and pitch; PX4's words\n",
         });
-        if let Some(axes) = axes {
-            let _ = writeln!(text, "{axes}");
-        }
+        text += axes;
         if let Some(bias) = power_bias {
             let line = format!("# power_bias_nm_per_n = {bias:?}");
-            text += &match spins {
-                Spins::Alternate => {
+            text += &match alternates {
+                true => {
                     format!("{line:<38} # least power, if wanted: one rotor of a unit then carries more, and its stop costs more; `check` says both\n")
                 }
-                Spins::Alike => {
+                false => {
                     "# no power_bias_nm_per_n: it saves nothing where no upper rotors turn against each other\n"
                         .to_owned()
                 }
@@ -234,9 +216,8 @@ impl NewFrame<'_> {
         if let Some(name) = self.name.map(str::to_owned).or(self.file.map(name_of_file)) {
             return name;
         }
-        let mut frames = Frame::ALL.into_iter();
-        let word = frames.find(|(frame, ..)| *frame == self.frame);
-        format!("my-{}", word.map_or("frame", |(_, word, _)| word))
+        let (_, word, _) = Frame::ALL[self.frame as usize];
+        format!("my-{word}")
     }
 
     /// `[layout]`, of a single pair its `[[unit]]`.
@@ -245,7 +226,7 @@ impl NewFrame<'_> {
             units,
             first_angle_deg,
             first,
-            spins,
+            alternates,
             ..
         } = self.frame.shape();
         let arm = match (units, self.arm_m) {
@@ -266,28 +247,17 @@ impl NewFrame<'_> {
             }
             (_, Some(arm)) => arm,
         };
-        let (channels, spin, order) = match self.outputs {
-            None => {
-                let channels = (0..units).map(|k| [k, units + k]).collect();
-                (channels, Spin::Cw, String::new())
-            }
+        let mut order = String::new();
+        let (channels, spin) = match self.outputs {
+            None => ((0..units).map(|k| [k, units + k]).collect(), Spin::Cw),
             Some(stack) => {
                 let name = stack.name();
-                let (channels, spin) = self
-                    .frame
-                    .outputs(stack)
-                    .ok_or_else(|| format!("--outputs: {name} has no such frame of coaxial pairs"))?;
-                (channels, spin, format!(", in {name}'s motor order"))
+                order = format!(", in {name}'s motor order");
+                let outputs = self.frame.outputs(stack);
+                outputs.ok_or_else(|| format!("--outputs: {name} has no such frame of coaxial pairs"))?
             }
         };
-        let channels: Vec<String> = channels
-            .iter()
-            .map(|pair: &[usize; 2]| format!("{pair:?}"))
-            .collect();
-        let spins = match spins {
-            Spins::Alternate => "they alternate",
-            Spins::Alike => "all turn alike",
-        };
+        let spins = ["all turn alike", "they alternate"][usize::from(alternates)];
         let mut text =
             String::from("# The units in a circle, clockwise from the first as seen from above.\n[layout]\n");
         for (value, comment) in [
@@ -310,8 +280,7 @@ impl NewFrame<'_> {
         }
         let _ = writeln!(
             text,
-            "channels = [{}]\n{:<38} # outputs of the upper and of the lower rotor of each{order}",
-            channels.join(", "),
+            "channels = {channels:?}\n{:<38} # outputs of the upper and of the lower rotor of each{order}",
             ""
         );
         if !self.pairs.is_empty() {

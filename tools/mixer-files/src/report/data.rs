@@ -41,7 +41,7 @@ pub enum Data {
 }
 
 impl Data {
-    /// Every figure with its word and with what its columns hold.
+    /// Every figure in its order, with its word and with what its columns hold.
     #[rustfmt::skip]
     pub const ALL: [(Data, &str, &str); 9] = [
         (Data::Layout, "layout", "Place, spin and output channels of every unit"),
@@ -57,8 +57,7 @@ impl Data {
 
     /// Its word on the command line.
     pub(crate) fn word(self) -> &'static str {
-        let found = Data::ALL.into_iter().find(|(figure, ..)| *figure == self);
-        found.map_or("", |(_, word, _)| word)
+        Data::ALL[self as usize].1
     }
 }
 
