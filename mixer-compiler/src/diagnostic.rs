@@ -18,7 +18,9 @@ use self::content::Content;
 pub use self::source::utf16;
 use self::source::{BYTE_ORDER_MARK, Place, Source};
 pub(crate) use self::wording::{any_of, nearest, number, quoted};
-pub use self::wording::{cut_to, is_plain, printable, printable_lines, rounded, rounded_up, wrapped};
+pub use self::wording::{
+    commented, cut_to, hanging, is_plain, printable, printable_lines, rounded, rounded_up, wrapped,
+};
 
 /// One fault.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -113,6 +113,19 @@ pub fn wrapped(text: &str, width: usize) -> Vec<String> {
     lines
 }
 
+/// [`wrapped`], with `mark` before the first line and blanks before the others.
+pub fn hanging(mark: &str, text: &str, width: usize) -> impl ExactSizeIterator<Item = String> {
+    let lines = wrapped(text, width).into_iter().enumerate();
+    lines.map(move |(k, line)| if k == 0 { mark } else { "  " }.to_owned() + &line)
+}
+
+/// [`hanging`] as comments of TOML, each ended.
+pub fn commented(mark: &str, text: &str, width: usize) -> String {
+    hanging(mark, text, width)
+        .map(|line| format!("# {line}\n"))
+        .collect()
+}
+
 /// Text of the user's between backticks, on one line and of bounded length.
 pub(crate) fn quoted(text: &str) -> String {
     const LONGEST: usize = 48;

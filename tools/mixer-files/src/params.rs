@@ -7,7 +7,7 @@ pub(crate) mod writer;
 use std::fmt::Write as _;
 
 use mixer_compiler::Compiled;
-use mixer_compiler::diagnostic::{printable_lines, wrapped};
+use mixer_compiler::diagnostic::{commented, printable_lines, wrapped};
 
 pub use crate::params::parameter::bench_pulses;
 use crate::params::parameter::{PULSES_US, Parameter, Parameters};
@@ -119,16 +119,14 @@ fn header(compiled: &Compiled, file: &str, options: &Options, notes: &[String]) 
         let (what, unit) = writer(options.stack).unit;
         let unit = unit(compiled);
         let (roll, pitch, yaw, thrust) = (unit.roll_nm, unit.pitch_nm, unit.yaw_nm, unit.thrust_n);
+        // Writing to a String cannot fail.
         let _ = writeln!(
             head,
             "# {what} is {roll:.4} N m roll, {pitch:.4} N m pitch, {yaw:.4} N m yaw, {thrust:.3} N.",
         );
     }
     for note in beware.iter().chain(notes) {
-        for (k, line) in wrapped(&format!("{note}."), COMMENT).iter().enumerate() {
-            // Writing to a String cannot fail.
-            let _ = writeln!(head, "# {} {line}", if k == 0 { "*" } else { " " });
-        }
+        head += &commented("* ", &format!("{note}."), COMMENT);
     }
     printable_lines(&head)
 }

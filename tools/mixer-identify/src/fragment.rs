@@ -2,9 +2,8 @@
 
 use mixer_compiler::airframe::TYPICAL_EXPONENT;
 use std::fmt::Write as _;
-use std::iter::{once, repeat};
 
-use mixer_compiler::diagnostic::{printable, wrapped};
+use mixer_compiler::diagnostic::{self, printable};
 use toml_edit::{DocumentMut, value};
 
 use super::bench::BenchKind;
@@ -260,7 +259,5 @@ fn comments(statements: &[Statement], table: &str) -> String {
 
 /// A comment with `mark` before its first line. TOML has no control characters in comments.
 fn comment(mark: &str, text: &str) -> String {
-    let marks = once(mark).chain(repeat("  "));
-    let lines = marks.zip(wrapped(&printable(text), WIDTH));
-    lines.map(|(mark, line)| format!("# {mark}{line}\n")).collect()
+    diagnostic::commented(mark, &printable(text), WIDTH)
 }

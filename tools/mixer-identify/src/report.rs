@@ -1,6 +1,6 @@
 //! The report on standard output, at most 100 columns wide: statements, and what the user should know.
 
-use mixer_compiler::diagnostic::wrapped;
+use mixer_compiler::diagnostic::{hanging, wrapped};
 
 use super::fit::Fit;
 use super::fit::cross::Candidate;
@@ -66,16 +66,12 @@ fn statements_in_lines<'a>(statements: impl IntoIterator<Item = &'a Statement>) 
     let mut lines = Vec::new();
     let mut before = "";
     for statement in statements {
-        let mut name = if statement.name == before {
-            ""
-        } else {
-            statement.name
-        };
-        before = if statement.name.is_empty() {
-            before
-        } else {
-            statement.name
-        };
+        let mut name = statement.name;
+        if name == before {
+            name = "";
+        } else if !name.is_empty() {
+            before = name;
+        }
         for line in wrapped(&statement.text, WIDTH - INDENT) {
             lines.push(format!("{name:<INDENT$}{line}"));
             name = "";
@@ -92,14 +88,13 @@ fn warnings(lines: &mut Vec<String>, warnings: &[&str], most: usize) {
     };
     lines.push(format!("{:<INDENT$}{count}", "warnings"));
     for (k, warning) in warnings.iter().enumerate() {
-        let wrapped = wrapped(warning, WIDTH - 4);
+        let listed = hanging("* ", warning, WIDTH - 4);
         // One line for how many are left.
-        if lines.len() + wrapped.len() + 1 > most {
+        if lines.len() + listed.len() + 1 > most {
             lines.push(format!("  and {} more: --verbose", warnings.len() - k));
             return;
         }
-        let marks = ["*"].into_iter().chain(std::iter::repeat(" "));
-        lines.extend(marks.zip(wrapped).map(|(mark, line)| format!("  {mark} {line}")));
+        lines.extend(listed.map(|line| format!("  {line}")));
     }
 }
 

@@ -18,11 +18,7 @@ pub(super) fn pair(rotors: &[Rotor], upper: &[usize]) -> Result<Vec<Unit>, Strin
         let last = rotors.len().max(1) - 1;
         return Err(format!("--upper {channel}: the outputs are 0 to {last}"));
     }
-    let is_alone = |rotor: &&Rotor| {
-        !rotors
-            .iter()
-            .any(|other| other.channel != rotor.channel && is_on_axis(rotor, other))
-    };
+    let is_alone = |rotor: &&Rotor| partners(rotors, rotor).next().is_none();
     let alone: Vec<&Rotor> = rotors.iter().filter(is_alone).collect();
     if let ([first, second], 4) = (&alone[..], rotors.len()) {
         return Err(format!(
@@ -30,11 +26,9 @@ pub(super) fn pair(rotors: &[Rotor], upper: &[usize]) -> Result<Vec<Unit>, Strin
             first.place, first.channel, second.channel
         ));
     }
-    let mut units = Vec::new();
-    let mut paired = vec![false; rotors.len()];
-    for (index, rotor) in rotors.iter().enumerate() {
-        let others = rotors.iter().enumerate().filter(|(other, _)| *other != index);
-        let mut partners = others.filter(|(_, other)| is_on_axis(rotor, other));
+    let mut units: Vec<Unit> = Vec::new();
+    for rotor in rotors {
+        let mut partners = partners(rotors, rotor);
         let partner = match (partners.next(), partners.next()) {
             (Some(partner), None) => partner,
             (None, _) => {
@@ -44,18 +38,17 @@ pub(super) fn pair(rotors: &[Rotor], upper: &[usize]) -> Result<Vec<Unit>, Strin
                     rotor.place, rotor.channel
                 ));
             }
-            (Some((_, first)), Some((_, second))) => {
+            (Some(first), Some(second)) => {
                 return Err(format!(
                     "{}: rotors {}, {} and {} are in one place: move the one that belongs to another pair",
                     second.place, rotor.channel, first.channel, second.channel
                 ));
             }
         };
-        if paired[index] || paired[partner.0] {
-            continue;
+        let is_paired = |channel| units.iter().any(|unit| unit.channels.contains(&channel));
+        if !is_paired(rotor.channel) && !is_paired(partner.channel) {
+            units.push(unit(rotor, partner, upper)?);
         }
-        (paired[index], paired[partner.0]) = (true, true);
-        units.push(unit(rotor, partner.1, upper)?);
     }
     units.sort_by_key(|unit| unit.channels[0]);
     Ok(units)
@@ -65,22 +58,22 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// How far `other` is along the rotor's axis, towards its thrust.
-fn along(rotor: &Rotor, other: &Rotor) -> f64 {
-    let apart: [f64; 3] = std::array::from_fn(|k| other.position_m[k] - rotor.position_m[k]);
-    dot(apart, rotor.axis)
-}
-
-fn is_on_axis(rotor: &Rotor, other: &Rotor) -> bool {
+/// How far `other` is along the rotor's axis, towards its thrust, and beside it.
+fn apart(rotor: &Rotor, other: &Rotor) -> [f64; 2] {
     let apart: [f64; 3] = std::array::from_fn(|k| other.position_m[k] - rotor.position_m[k]);
     let along = dot(apart, rotor.axis);
-    let beside = (dot(apart, apart) - along * along).max(0.0).sqrt();
-    beside < SAME_AXIS_M && dot(rotor.axis, other.axis) > PARALLEL
+    [along, (dot(apart, apart) - along * along).max(0.0).sqrt()]
+}
+
+/// The other rotors on the axis of one.
+fn partners<'a>(rotors: &'a [Rotor], rotor: &'a Rotor) -> impl Iterator<Item = &'a Rotor> {
+    let others = rotors.iter().filter(|other| other.channel != rotor.channel);
+    others.filter(|other| apart(rotor, other)[1] < SAME_AXIS_M && dot(rotor.axis, other.axis) > PARALLEL)
 }
 
 fn unit(rotor: &Rotor, other: &Rotor, upper: &[usize]) -> Result<Unit, String> {
     let [a, b] = [rotor, other].map(|rotor| rotor.channel);
-    let higher = along(rotor, other);
+    let [higher, _] = apart(rotor, other);
     let other_is_upper = match (upper.contains(&a), upper.contains(&b)) {
         (true, true) => {
             return Err(format!(

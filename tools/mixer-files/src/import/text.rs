@@ -1,11 +1,10 @@
 //! The airframe file.
 
 use mixer_compiler::airframe::TYPICAL_EXPONENT;
-use std::fmt::Write as _;
 use std::path::Path;
 
 use mixer_compiler::Source;
-use mixer_compiler::diagnostic::wrapped;
+use mixer_compiler::diagnostic::commented;
 use mixer_identify::air::Air;
 use mixer_identify::pair_file::PairFile;
 use toml::Value;
@@ -32,9 +31,7 @@ pub(super) fn tables(imported: &mut Imported, units: &[Unit], pair: Option<&Pair
             "no parameter describes the pair: `cargo mixer identify` makes [pair] of bench data; --pair takes it in".to_owned(),
         );
     }
-    let mut out = String::new();
-    // Writing to a String cannot fail; the results are dropped.
-    let _ = writeln!(out, "[throttle]\nmin = {min:?}\nmax = {max:?}\n\n{voltage}");
+    let mut out = format!("[throttle]\nmin = {min:?}\nmax = {max:?}\n\n{voltage}\n");
     match pair {
         Some(pair) => out += &pair.tables(TAKEN).0,
         None => out += "# [pair]                               # basis, thrust_n, torque_nm, upper_spin\n\n",
@@ -44,44 +41,36 @@ pub(super) fn tables(imported: &mut Imported, units: &[Unit], pair: Option<&Pair
         out.push('\n');
     }
     if let Some((airmode, reason)) = imported.airmode {
-        let _ = writeln!(
-            out,
-            "[allocation]\nairmode = \"{airmode}\"                 # {reason}\n"
-        );
+        out += &format!("[allocation]\nairmode = \"{airmode}\"                 # {reason}\n\n");
     }
-    for (index, unit) in units.iter().enumerate() {
-        let [x, y, z] = unit.position_m;
-        let [upper, lower] = unit.channels;
-        let _ = writeln!(out, "[[unit]]                               # {index}");
-        let _ = writeln!(out, "position_m = [{x:?}, {y:?}, {z:?}]");
-        if unit.axis != UPWARD {
-            let [x, y, z] = unit.axis;
-            let _ = writeln!(out, "axis = [{x:?}, {y:?}, {z:?}]");
-        }
-        let _ = writeln!(out, "upper_spin = \"{}\"", unit.upper_spin.name());
-        let _ = writeln!(out, "channels = [{upper}, {lower}]");
-        if index + 1 < units.len() {
-            out.push('\n');
-        }
-    }
+    let unit = |(index, unit): (usize, &Unit)| {
+        let axis = match unit.axis == UPWARD {
+            true => String::new(),
+            false => format!("axis = {:?}\n", unit.axis),
+        };
+        format!(
+            "[[unit]]                               # {index}\nposition_m = {:?}\n{axis}upper_spin = \"{}\"\nchannels = {:?}\n",
+            unit.position_m,
+            unit.upper_spin.name(),
+            unit.channels
+        )
+    };
+    let units: Vec<String> = units.iter().enumerate().map(unit).collect();
+    out += &units.join("\n");
     out
 }
 
 /// The file of these tables.
 pub(super) fn airframe(name: &str, file: &Source, imported: &Imported, tables: &str) -> String {
-    let mut out = String::new();
-    let _ = writeln!(out, "name = {}", Value::from(name));
-    let _ = writeln!(out, "description = {}\n", Value::from(&*imported.origin));
-    let _ = writeln!(
-        out,
-        "# Imported by cargo mixer {} from {}.",
+    let mut out = format!(
+        "name = {}\ndescription = {}\n\n# Imported by cargo mixer {} from {}.\n",
+        Value::from(name),
+        Value::from(&*imported.origin),
         env!("CARGO_PKG_VERSION"),
         Path::new(&file.name).file_name().unwrap_or_default().display()
     );
     for note in &imported.notes {
-        for (k, line) in wrapped(&format!("{note}."), COMMENT).iter().enumerate() {
-            let _ = writeln!(out, "# {} {line}", if k == 0 { "*" } else { " " });
-        }
+        out += &commented("* ", &format!("{note}."), COMMENT);
     }
     // Names of files and comments of the pair's file are in it.
     printable_lines(&format!("{out}\n{tables}"))

@@ -18,30 +18,27 @@ pub(super) fn notes(rotors: &[Rotor], units: &[Unit]) -> Result<Vec<String>, Str
         units
             .iter()
             .filter_map(move |unit| of(unit.channels[k]))
-            .collect::<Vec<_>>()
+            .collect()
     };
-    let (layers, mut notes) = ([layer(0), layer(1)], Vec::new());
+    let (layers, mut notes): ([Vec<&Rotor>; 2], _) = ([0, 1].map(layer), Vec::new());
     if let Some(rotor) = rotors.iter().find(|rotor| rotor.own.thrust == 0.0) {
         return Err(format!(
             "{}: rotor {} has no thrust, and the stack leaves it out: a pair has two rotors",
             rotor.place, rotor.channel
         ));
     }
-    for (name, what) in [("upper", &layers[0]), ("lower", &layers[1])] {
-        if let Some([one, other]) = different(what, |own| own.thrust) {
-            notes.push(format!(
-                "the {name} rotors {} and {} have thrusts of {} and {}, and the file gives all units one pair: if they differ, name \
-                 a `[[pair]]` for each kind and write pair = \"..\" in every `[[unit]]`",
-                one.channel, other.channel, one.own.thrust, other.own.thrust
-            ));
-        }
-        if let Some([one, other]) = different(what, |own| own.yaw) {
-            notes.push(format!(
-                "the {name} rotors {} and {} have yaw factors of {} and {}, which are not used: all units get the pair's torque, \
-                 unless a `[[pair]]` is named for each kind",
-                one.channel, other.channel, one.own.yaw, other.own.yaw
-            ));
-        }
+    for (name, layer) in ["upper", "lower"].into_iter().zip(&layers) {
+        notes.extend(different(name, layer, "thrusts", |own| own.thrust).map(|differ| {
+            format!(
+                "{differ}, and the file gives all units one pair: if they differ, name a `[[pair]]` for each kind and write pair = \"..\" \
+                 in every `[[unit]]`"
+            )
+        }));
+        notes.extend(different(name, layer, "yaw factors", |own| own.yaw).map(|differ| {
+            format!(
+                "{differ}, which are not used: all units get the pair's torque, unless a `[[pair]]` is named for each kind"
+            )
+        }));
     }
     let first = |k: usize| layers[k].first().map(|rotor| rotor.own);
     if let (Some(upper), Some(lower)) = (first(0), first(1))
@@ -71,11 +68,17 @@ fn differ(a: f64, b: f64) -> bool {
     (a - b).abs() > SAME * a.abs().max(b.abs())
 }
 
-/// Two of these rotors whose settings differ.
-fn different<'a>(rotors: &[&'a Rotor], of: fn(&Own) -> f64) -> Option<[&'a Rotor; 2]> {
+/// That two rotors of a layer differ in a setting.
+fn different(layer: &str, rotors: &[&Rotor], setting: &str, of: fn(&Own) -> f64) -> Option<String> {
     let one = rotors.first()?;
     let other = rotors.iter().find(|other| differ(of(&one.own), of(&other.own)))?;
-    Some([one, other])
+    Some(format!(
+        "the {layer} rotors {} and {} have {setting} of {} and {}",
+        one.channel,
+        other.channel,
+        of(&one.own),
+        of(&other.own)
+    ))
 }
 
 /// That outputs have several ranges of pulses.

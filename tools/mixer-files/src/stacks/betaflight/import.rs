@@ -147,31 +147,24 @@ impl Dump {
             let (place, platform) = profile.platform.clone()?;
             (!platform.eq_ignore_ascii_case(MULTIROTOR)).then_some((place, platform))
         };
-        let of_multirotors = self
-            .profiles
-            .iter()
-            .filter(|(_, profile)| foreign(profile).is_none());
+        let with_motors = || {
+            self.profiles
+                .iter()
+                .filter(|(_, profile)| !profile.motors.is_empty())
+        };
+        let of_multirotors = with_motors().filter(|(_, profile)| foreign(profile).is_none());
         // The first of several that have as many.
         let best = of_multirotors.rev().max_by_key(|(_, profile)| profile.rotors());
         let best = best.filter(|(_, profile)| profile.rotors() > 0);
-        let mut of_others = self
-            .profiles
-            .values()
-            .filter(|profile| !profile.motors.is_empty());
-        if let (None, Some((place, platform))) = (best, of_others.find_map(foreign)) {
+        let platform = with_motors().find_map(|(_, profile)| foreign(profile));
+        if let (None, Some((place, platform))) = (best, platform) {
             return Err(format!(
                 "{place}: platform_type is {platform}, no {MULTIROTOR}: its motors are not rotors in pairs"
             ));
         }
         let number = best.map_or(1, |(number, _)| *number);
-        let others = || {
-            let others = self
-                .profiles
-                .iter()
-                .filter(|(_, profile)| !profile.motors.is_empty());
-            others.filter(move |(other, _)| **other != number)
-        };
-        let left_out = others().map(|(other, profile)| {
+        let others = with_motors().filter(|(other, _)| **other != number);
+        let left_out = others.map(|(other, profile)| {
             let platform = foreign(profile).map_or_else(String::new, |(_, platform)| {
                 format!(", of a vehicle of type {platform},")
             });
@@ -269,17 +262,13 @@ pub(crate) fn read(source: &Source, arm: Option<f64>) -> Result<Imported, String
     notes.extend(gains(&profile));
     let last = profile.motors.keys().next_back().copied().unwrap_or_default();
     let others = (0..=last).filter(|motor| !profile.motors.get(motor).is_some_and(is_rotor));
-    let left_out = others.map(|motor| match profile.motors.get(&motor) {
-        Some((place, _)) => LeftOut {
-            channel: motor,
-            place: place.clone(),
-            why: "has no part in roll, pitch and yaw, so it is no rotor",
-        },
-        None => LeftOut {
-            channel: motor,
-            place: file.clone(),
-            why: "is missing",
-        },
+    let left_out = others.map(|channel| {
+        let (place, why) = match profile.motors.get(&channel) {
+            Some((place, _)) => (place, "has no part in roll, pitch and yaw, so it is no rotor"),
+            None => (file, "is missing"),
+        };
+        let place = place.clone();
+        LeftOut { channel, place, why }
     });
     Ok(Imported {
         origin: format!("{} motors of Betaflight or INAV", places.len()),
