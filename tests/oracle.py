@@ -12,6 +12,9 @@
 It shares nothing with the compiler but the file: its own reading of the file, its own effectiveness, pseudo-inverse,
 inverse of the pair's map and laws of voltage and density, in double precision, standard library only (Python 3.11 or later).
 
+A single rotor (`rotor = ".."`) is a pair whose lower rotor is always out: its torque is not in proportion to its thrust, which
+M+ takes it for, so that its least-norm efforts are those of the wrench from which the difference is taken.
+
 What it asks of every row:
   * throttles within [min, max]; one row per setpoint
   * the achieved wrench is the one that these throttles give, within the file's tolerance of every unit
@@ -59,6 +62,13 @@ def regular(layout, bench_spin):
     return units
 
 
+def single(rotor):
+    """A single rotor as the upper one of a pair whose lower one gives nothing."""
+    curves = {"thrust_n": rotor["thrust_n"], "torque_nm": [-c for c in rotor["torque_nm"]]}
+    terms = {key: [dict(zip(((1, 0), (2, 0), (3, 0)), c)).get(term, 0.0) for term in TERMS["cubic"]] for key, c in curves.items()}
+    return {"basis": "cubic", "upper_spin": "cw"} | terms
+
+
 class Airframe:
     def __init__(self, path):
         with open(path, "rb") as file:
@@ -66,6 +76,7 @@ class Airframe:
         self.low, self.high = spec["throttle"]["min"], spec["throttle"]["max"]
         pairs = spec["pair"] if isinstance(spec["pair"], list) else [spec["pair"]]
         named = {pair.get("name"): pair for pair in pairs}
+        rotors = {rotor["name"]: single(rotor) for rotor in spec.get("rotor", [])}
         # That of each unit, and its coefficients of thrust and of torque, each with its powers of u and l.
         self.pairs, self.maps = [], []
         self.voltage = spec.get("voltage")
@@ -79,6 +90,7 @@ class Airframe:
         self.channels, columns_f, columns_q = [], [], []
         for unit in spec.get("unit") or regular(spec["layout"], pairs[0]["upper_spin"]):
             pair = named[unit.get("pair")] if len(pairs) > 1 else pairs[0]
+            pair = rotors[unit["rotor"]] if "rotor" in unit else pair
             self.pairs.append(pair)
             self.maps.append([list(zip(pair[key], TERMS[pair["basis"]])) for key in ("thrust_n", "torque_nm")])
             (x, y, z), (ax, ay, az) = unit["position_m"], unit.get("axis", [0.0, 0.0, -1.0])
@@ -91,7 +103,9 @@ class Airframe:
             self.channels.append(unit["channels"])
         self.units = len(self.channels)
         is_vertical = all(column[2] == 0.0 for column in columns_f)
-        self.is_general = len(pairs) > 1 or self.units > 4 or not is_vertical or self.airmode == "roll-pitch-yaw"
+        self.kappa = [self.torque_per_thrust(unit) for unit in range(self.units)]
+        self.rotors = sum(map(len, self.channels))
+        self.is_general = len(pairs) > 1 or bool(rotors) or self.units > 4 or not is_vertical or self.airmode == "roll-pitch-yaw"
         columns = columns_f + columns_q
         self.m = [[column[row] for column in columns] for row in range(4)]
         self.size = [self.largest(unit) for unit in range(self.units)]
@@ -102,13 +116,54 @@ class Airframe:
         of a unit's largest thrust and torque, D."""
         served = [row for row in range(4) if self.axes[row]]
         squares = [size[k] * size[k] for k in (0, 1) for size in self.size]
-        gram = [[sum(a * d * b for a, d, b in zip(self.m[i], squares, self.m[j])) for j in served] for i in served]
+        # A single rotor has one column, of its thrust with kappa times as much torque.
+        n, m = self.units, [list(row) for row in self.m]
+        for unit, kappa in enumerate(self.kappa):
+            if kappa is not None:
+                for row in m:
+                    row[unit] += kappa * row[n + unit]
+                    row[n + unit] = 0.0
+        gram = [[sum(a * d * b for a, d, b in zip(m[i], squares, m[j])) for j in served] for i in served]
         inverse = invert(gram)
-        result = [[0.0] * 4 for _ in range(2 * self.units)]
-        for k in range(2 * self.units):
+        result = [[0.0] * 4 for _ in range(2 * n)]
+        for k in range(2 * n):
             for j, column in enumerate(served):
-                result[k][column] = squares[k] * sum(self.m[i][k] * inverse[a][j] for a, i in enumerate(served))
+                result[k][column] = squares[k] * sum(m[i][k] * inverse[a][j] for a, i in enumerate(served))
+        for unit, kappa in enumerate(self.kappa):
+            if kappa is not None:
+                result[n + unit] = [kappa * share for share in result[unit]]
         return result
+
+    def torque_per_thrust(self, unit):
+        """Of a single rotor at half of its largest thrust; None of a pair."""
+        if len(self.channels[unit]) > 1:
+            return None
+        f, q = self.efforts(unit, self.throttle_of(unit, 0.5 * self.efforts(unit, self.high, 0.0)[0]), 0.0)
+        return q / f
+
+    def throttle_of(self, unit, thrust):
+        """The throttle of a single rotor's thrust, by bisection, limited to the range."""
+        low, high = self.low, self.high
+        for _ in range(60):
+            middle = 0.5 * (low + high)
+            low, high = (middle, high) if self.efforts(unit, middle, 0.0)[0] < thrust else (low, middle)
+        return low
+
+    def least_norm(self, request, k):
+        """The efforts of least norm, those of single rotors with their own torques."""
+        n, asked = self.units, list(request)
+        for _ in range(40):
+            wanted = [sum(m * r for m, r in zip(row, asked)) for row in self.m_plus]
+            singles = [unit for unit, kappa in enumerate(self.kappa) if kappa is not None]
+            if not singles:
+                return wanted
+            asked = list(request)
+            for unit in singles:
+                torque = k[1] * self.efforts(unit, self.throttle_of(unit, wanted[unit] / k[0]), 0.0)[1]
+                for axis in range(4):
+                    asked[axis] -= self.m[axis][n + unit] * (torque - wanted[n + unit])
+                wanted[n + unit] = torque
+        return wanted
 
     def largest(self, unit):
         """The largest thrust and torque of a unit, which lie on the border of the box of throttles."""
@@ -130,6 +185,8 @@ class Airframe:
         """What a unit gives with the rotors of some channels out."""
         at = [throttles[channel] for channel in self.channels[unit]]
         out = [channel in failed for channel in self.channels[unit]]
+        if len(at) == 1:
+            return self.efforts(unit, *at, 0.0)
         if out[0] != out[1]:
             rotor = 0 if out[1] else 1
             # Of the rotor alone: a1 x + a2 x^2 + a3 x^3.
@@ -178,6 +235,8 @@ class Airframe:
     def attains(self, unit, efforts):
         """True if some throttles within range give a unit these efforts at the reference voltage: damped Newton steps,
         projected on the box, from its middle and its corners."""
+        if self.kappa[unit] is not None:
+            return self.efforts(unit, self.low, 0.0)[0] <= efforts[0] <= self.efforts(unit, self.high, 0.0)[0]
         middle = 0.5 * (self.low + self.high)
         starts = [(middle, middle)] + [(u, l) for u in (self.low, self.high) for l in (self.low, self.high)]
         scale = self.size[unit]
@@ -210,7 +269,8 @@ class Airframe:
 
     def isolated_throttle(self, thrust):
         """d with f(d, 0) = thrust of the mean unit, by bisection, limited to the range."""
-        alone = [(c / self.units, i) for thrust, _ in self.maps for c, (i, j) in thrust if j == 0]
+        pairs = [of for of, kappa in zip(self.maps, self.kappa) if kappa is None]
+        alone = [(c / len(pairs), i) for thrust, _ in pairs for c, (i, j) in thrust if j == 0]
         low, high = self.low, self.high
         for _ in range(60):
             middle = 0.5 * (low + high)
@@ -219,8 +279,8 @@ class Airframe:
 
     def mean(self, throttle):
         """What the upper rotor of the mean unit gives alone."""
-        each = [self.efforts(unit, throttle, 0.0) for unit in range(self.units)]
-        return [sum(efforts[k] for efforts in each) / self.units for k in (0, 1)]
+        each = [self.efforts(unit, throttle, 0.0) for unit in range(self.units) if self.kappa[unit] is None]
+        return [sum(efforts[k] for efforts in each) / len(each) for k in (0, 1)]
 
     def wrench(self, efforts):
         return [sum(m * effort for m, effort in zip(row, efforts)) for row in self.m]
@@ -300,7 +360,7 @@ def judge_row(airframe, request, conditions, throttles, achieved, saturation, fa
         if abs(was - said) > allowed:
             faults.append(f"achieved {axis} is {was!r}, the mixer says {said!r}")
 
-    wanted = [sum(m * r for m, r in zip(row, request)) for row in airframe.m_plus]
+    wanted = airframe.least_norm(request, k)
     attainable = not failed and all(airframe.attains(i, [wanted[i] / k[0], wanted[n + i] / k[1]]) for i in range(n))
     budget = [
         sum(abs(row[i]) * airframe.tolerance[0] + abs(row[n + i]) * airframe.tolerance[1] for i in range(n)) + 4 * allowed
@@ -380,7 +440,7 @@ def judge(airframe, setpoints_path, mixed_path, failed=()):
     for index, (asked, row) in enumerate(zip(setpoints, mixed)):
         request = [float(asked[column]) for column in COLUMNS]
         conditions = float(asked["voltage_v"]), float(asked["density_kg_m3"]) if "density_kg_m3" in asked else None
-        throttles = [float(row[f"throttle_{channel}"]) for channel in range(2 * airframe.units)]
+        throttles = [float(row[f"throttle_{channel}"]) for channel in range(airframe.rotors)]
         achieved = [float(row["achieved_" + column]) for column in COLUMNS]
         found, attainable = judge_row(airframe, request, conditions, throttles, achieved, int(row["saturation"]), failed)
         delivered += attainable
@@ -406,7 +466,8 @@ class Isolated:
         for layer in (-1.0, 1.0):
             for i in range(n):
                 thrust, torque = [row[i] for row in airframe.m], [row[n + i] for row in airframe.m]
-                self.columns.append([f + layer * kappa * q for f, q in zip(thrust, torque)])
+                is_there = layer < 0.0 or airframe.kappa[i] is None
+                self.columns.append([is_there * (f + layer * kappa * q) for f, q in zip(thrust, torque)])
         served = [row for row in range(4) if airframe.axes[row]]
         gram = [[sum(c[i] * c[j] for c in self.columns) for j in served] for i in served]
         inverse = invert(gram)
@@ -481,14 +542,14 @@ def isolated_throttles(airframe, method, setpoints_path):
     an airmode."""
     n = airframe.units
     isolated = Isolated(airframe)
-    channels = [pair[0] for pair in airframe.channels] + [pair[1] for pair in airframe.channels]
-    yield [f"throttle_{channel}" for channel in range(2 * n)]
+    rotors = [(k * n + i, of[k]) for k in (0, 1) for i, of in enumerate(airframe.channels) if k < len(of)]
+    yield [f"throttle_{channel}" for channel in range(airframe.rotors)]
     for request, k in setpoints(airframe, setpoints_path):
         request = [value / k[0] for value in request]
         thrusts = isolated.thrusts(request) if method == "conventional" else isolated.sequential(request, method)
-        row = [0.0] * (2 * n)
-        for channel, thrust in zip(channels, thrusts):
-            row[channel] = airframe.isolated_throttle(thrust)
+        row = [0.0] * airframe.rotors
+        for rotor, channel in rotors:
+            row[channel] = airframe.isolated_throttle(thrusts[rotor])
         yield [f"{throttle:.7f}" for throttle in row]
 
 

@@ -25,6 +25,13 @@ fn answers_of_unlike_pairs_are_those_of_the_physics() {
     answers_are_those_of_the_physics(OTHERS, frames::zoo(OTHERS).expect("airframes/").unlike());
 }
 
+#[test]
+fn answers_with_single_rotors_are_those_of_the_physics() {
+    const OTHERS: u64 = 5;
+    let zoo = frames::zoo(OTHERS).expect("airframes/").with_single_rotors();
+    answers_are_those_of_the_physics(OTHERS, zoo);
+}
+
 fn answers_are_those_of_the_physics(seed: u64, zoo: Zoo) {
     let mut soak = Soak::new(zoo, seed);
     let mut failures = Vec::new();
@@ -100,7 +107,8 @@ fn planted_faults_are_found() {
     assert!(wrong_spin.contains(&Check::Truth), "{wrong_spin:?}");
     let wrong_channel = found(|compiled| {
         let unit = &mut compiled.airframe.units[2];
-        std::mem::swap(&mut unit.upper_channel, &mut unit.lower_channel);
+        let lower = unit.lower_channel.expect("a pair");
+        unit.lower_channel = Some(std::mem::replace(&mut unit.upper_channel, lower));
     });
     assert!(wrong_channel.contains(&Check::Truth), "{wrong_channel:?}");
     let wrong_range = found(|compiled| compiled.airframe.throttle.max -= 0.05);

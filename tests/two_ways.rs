@@ -36,6 +36,7 @@ macro_rules! airframes {
 
 airframes! {
     coaxial_bicopter: "../airframes/coaxial-bicopter.toml", "coaxial-bicopter", coaxial_bicopter::CoaxialBicopter;
+    hexa_stacked: "../airframes/hexa-stacked.toml", "hexa-stacked", hexa_stacked::HexaStacked;
     isae_x8: "../airframes/isae-x8.toml", "isae-x8", isae_x8::IsaeX8;
     px4_x12: "../airframes/px4-x12.toml", "px4-x12", px4_x12::Px4X12;
     px4_y6: "../airframes/px4-y6.toml", "px4-y6", px4_y6::Px4Y6;
@@ -46,6 +47,7 @@ airframes! {
     x8_16in_quartic: "../airframes/x8-16in-quartic.toml", "x8-16in-quartic", x8_16in_quartic::X8_16inQuartic;
     x8_22_16in: "../airframes/x8-22-16in.toml", "x8-22-16in", x8_22_16in::X8_22_16in;
     x8_22in_cubic: "../airframes/x8-22in-cubic.toml", "x8-22in-cubic", x8_22in_cubic::X8_22inCubic;
+    y4: "../airframes/y4.toml", "y4", y4::Y4;
 }
 
 /// The functions that stand beside the tables, on setpoints within and beyond the attainable ones.

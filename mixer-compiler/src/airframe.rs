@@ -10,6 +10,7 @@ mod name;
 mod pair;
 mod power;
 mod rotor_alone;
+pub(crate) mod single_rotor;
 mod throttle;
 mod uncertainty;
 mod unit;
@@ -31,7 +32,7 @@ pub use self::power::Power;
 pub use self::rotor_alone::RotorAlone;
 pub use self::throttle::Throttle;
 pub use self::uncertainty::Uncertainty;
-pub use self::unit::Unit;
+pub use self::unit::{Rotor, Unit};
 pub use self::vehicle::{GRAVITY, Vehicle};
 use crate::diagnostic::source::Source;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
@@ -47,6 +48,8 @@ keys! { FILE = "":
         "The range of every rotor's throttle.".required();
     PAIR "pair" = "", ValueKind::TableOrTables(&pair::TABLE),
         "Total thrust and torque of one unit at the reference voltage, from the bench; `[[pair]]` with a name each where units differ.".required();
+    ROTOR "rotor" = "", ValueKind::Tables(&single_rotor::TABLE),
+        "One for each kind of single rotor, where units are not all pairs.";
     VOLTAGE "voltage" = "", ValueKind::Table(&correction::VOLTAGE_TABLE),
         "How thrust and torque follow the battery's voltage; without it they do not.";
     AIR "air" = "", ValueKind::Table(&correction::AIR_TABLE),
@@ -54,7 +57,7 @@ keys! { FILE = "":
     LAYOUT "layout" = "", ValueKind::Table(&layout::TABLE),
         "A regular frame, instead of [[unit]].";
     UNIT "unit" = "", ValueKind::Tables(&unit::TABLE),
-        "One for each pair of rotors.";
+        "One for each pair of rotors, and for each single rotor.";
     INVERSE "inverse" = "", ValueKind::Table(&inverse::TABLE),
         "How truly, and how, the pair's map is inverted.";
     ALLOCATION "allocation" = "", ValueKind::Table(&allocation::TABLE),
@@ -82,6 +85,8 @@ pub struct Airframe {
     pub pair: Pair,
     /// The other pairs, where units differ: [`Airframe::pair_of`].
     pub other_pairs: Vec<Pair>,
+    /// The single rotors, each as a pair whose lower rotor never turns, with its curves in `lower_out`.
+    pub single_rotors: Vec<Pair>,
     /// Correction for the battery's voltage, V; `None` where thrust and torque do not depend on it.
     pub voltage: Option<Correction>,
     /// Correction for the air's density, kg/m3; `None` where they do not depend on it.
@@ -135,9 +140,9 @@ impl Airframe {
         name::if_refused(source)
     }
 
-    /// Number of rotors, twice that of the units.
+    /// Number of rotors: two of each pair, and the single ones.
     pub fn rotors(&self) -> usize {
-        2 * self.units.len()
+        self.units.iter().flat_map(Unit::channels).count()
     }
 
     /// The pairs of the file, in its order.
@@ -145,24 +150,38 @@ impl Airframe {
         std::iter::once(&self.pair).chain(&self.other_pairs)
     }
 
-    /// Whether units have different pairs.
+    /// What units are by [`Unit::pair`]: the pairs of the file, then its single rotors as pairs.
+    pub fn kinds(&self) -> impl Iterator<Item = &Pair> {
+        self.pairs().chain(&self.single_rotors)
+    }
+
+    /// Whether units differ.
     pub fn is_unlike(&self) -> bool {
-        !self.other_pairs.is_empty()
+        !self.other_pairs.is_empty() || !self.single_rotors.is_empty()
     }
 
-    /// The pair of a unit.
+    /// The pair of a unit, or its single rotor as one.
     pub fn pair_of(&self, unit: &Unit) -> &Pair {
-        match unit.pair.checked_sub(1) {
-            Some(other) => &self.other_pairs[other],
-            None => &self.pair,
-        }
+        let Some(other) = unit.pair.checked_sub(1) else {
+            return &self.pair;
+        };
+        let single = other.checked_sub(self.other_pairs.len());
+        single.map_or_else(|| &self.other_pairs[other], |single| &self.single_rotors[single])
     }
 
-    /// The words `, pair "front"`; none where all units are alike.
+    /// Thrust and torque of a unit that is a single rotor; `None` of a pair.
+    pub fn curve_of(&self, unit: &Unit) -> Option<&RotorAlone> {
+        let is_single = unit.lower_channel.is_none();
+        self.pair_of(unit).lower_out.as_ref().filter(|_| is_single)
+    }
+
+    /// The words `, pair "front"` or `, rotor "tail"`; none where all units are alike.
     pub fn named_pair(&self, unit: &Unit) -> String {
-        match self.is_unlike() {
-            true => format!(", pair \"{}\"", self.pair_of(unit).name),
-            false => String::new(),
+        let name = &self.pair_of(unit).name;
+        match unit.lower_channel {
+            _ if !self.is_unlike() || name.is_empty() => String::new(),
+            Some(_) => format!(", pair \"{name}\""),
+            None => format!(", rotor \"{name}\""),
         }
     }
 
@@ -184,6 +203,7 @@ impl Airframe {
         let view = |(k, pair): (usize, &Pair)| Airframe {
             pair: pair.clone(),
             other_pairs: Vec::new(),
+            single_rotors: Vec::new(),
             units: self.units.iter().map(|unit| alike(unit, pair)).collect(),
             view: Some(k),
             ..self.clone()
@@ -191,12 +211,13 @@ impl Airframe {
         self.pairs().enumerate().map(view).collect()
     }
 
-    /// The same airframe with the mean of its units' pairs in all of them: what a mixer has that takes rotors for alike.
+    /// The same airframe with the mean of its pairs in all units: what a mixer has that takes rotors for alike.
     pub fn with_mean_pair(&self) -> Airframe {
         let mut of_first = self.of_each_pair().swap_remove(0);
+        let pairs = || self.units.iter().filter(|unit| unit.lower_channel.is_some());
         let mean = |terms: fn(&Pair) -> &Vec<f64>, term: usize| {
-            let values = self.units.iter().map(|unit| terms(self.pair_of(unit))[term]);
-            values.sum::<f64>() / self.units.len() as f64
+            let values = pairs().map(|unit| terms(self.pair_of(unit))[term]);
+            values.sum::<f64>() / pairs().count() as f64
         };
         if self.is_unlike() {
             let terms = 0..self.pair.thrust_n.len();
@@ -266,13 +287,12 @@ impl Airframe {
     }
 
     /// Electrical power of all rotors at the reference voltage, W, with a throttle per channel;
-    /// `None` where the file has no `[pair.power]`, or a channel has no throttle.
+    /// `None` where the file has no `[pair.power]`, a unit is a single rotor, or a channel has no throttle.
     pub fn power_w(&self, throttle: &[f64]) -> Option<f64> {
         let of_unit = |unit: &Unit| {
             let map = self.pair_of(unit).power.as_ref()?;
-            let [u, l] =
-                [unit.upper_channel, unit.lower_channel].map(|channel| throttle.get(channel).copied());
-            Some(map.at([u?, l?]))
+            let of = |channel: usize| throttle.get(channel).copied();
+            Some(map.at([of(unit.upper_channel)?, of(unit.lower_channel?)?]))
         };
         self.units.iter().map(of_unit).sum()
     }
@@ -314,7 +334,11 @@ impl Airframe {
         help: impl Into<String>,
     ) -> Diagnostic {
         let message = match self.view {
-            Some(_) if !self.pair.name.is_empty() => {
+            // A frame of one pair and single rotors is no view of that pair.
+            Some(_)
+                if !self.pair.name.is_empty()
+                    && (self.single_rotors.is_empty() || key.starts_with("pair")) =>
+            {
                 format!("pair \"{}\": {}", self.pair.name, message.into())
             }
             _ => message.into(),
@@ -347,10 +371,14 @@ fn read(table: &DeTable<'_>, faults: &mut Vec<Diagnostic>) -> Option<Airframe> {
     let pairs: Option<Vec<Pair>> = pairs.into_iter().map(|(pair, _)| pair).collect();
     let mut pairs = pairs.unwrap_or_default();
     pair::unite(&mut pairs);
+    let single_rotors = file.tables(&ROTOR, |table| single_rotor::read(table, throttle.as_ref()));
     // Of a table that is there twice the rest was not read.
     let is_whole = !file.faults.iter().any(|fault| fault.code == Code::Syntax);
     let pair_names = pairs.iter().filter(|_| is_whole).map(|pair| pair.name.clone());
     let pair_names: Vec<String> = pair_names.collect();
+    let single_rotors: Option<Vec<Pair>> = single_rotors.into_iter().collect();
+    let rotor_names = single_rotors.iter().flatten().map(|rotor| rotor.name.clone());
+    let rotor_names: Vec<String> = rotor_names.collect();
     let voltage = file.table(&VOLTAGE, correction::read_voltage);
     let of_voltage = voltage.as_ref().map(Option::as_ref);
     let air = file.table(&AIR, |table| correction::read_air(table, of_voltage));
@@ -403,7 +431,17 @@ fn read(table: &DeTable<'_>, faults: &mut Vec<Diagnostic>) -> Option<Airframe> {
         }
     };
     // A table that was refused left its faults, so that no default takes its place.
-    let units = unit::check(&units, &pair_names, &places, file.faults);
+    let units = unit::check(&units, [&pair_names, &rotor_names], &places, file.faults);
+    let has_bias = |allocation: &Allocation| allocation.power_bias_nm_per_n != 0.0;
+    if !rotor_names.is_empty() && allocation.iter().flatten().any(has_bias) {
+        let key = "allocation.power_bias_nm_per_n";
+        let message = "least power on a frame with single rotors".to_owned();
+        let place = spec::place_in(&places, key);
+        let fault = Diagnostic::new(Code::PowerBias, key, place, message);
+        let help = "remove it: least power shifts torque from pair to pair, which every unit must then be";
+        file.faults
+            .push(fault.label("for frames of pairs alone").help(help));
+    }
     let is_one_of_a_list = pairs.len() == 1 && places.contains_key("pair[0]");
     let mut pairs = pairs.into_iter();
     Some(Airframe {
@@ -413,6 +451,7 @@ fn read(table: &DeTable<'_>, faults: &mut Vec<Diagnostic>) -> Option<Airframe> {
         throttle: throttle?,
         pair: pairs.next()?,
         other_pairs: pairs.collect(),
+        single_rotors: single_rotors?,
         voltage: voltage.flatten(),
         air: air.flatten(),
         inverse: inverse.flatten().unwrap_or_default(),

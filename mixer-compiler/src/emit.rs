@@ -1,6 +1,7 @@
 //! The generated Rust: the tables as constants and one inline mixer function.
 
 use mixer_rt::Wrench;
+use mixer_rt::tables::WithSingleRotors;
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
@@ -15,7 +16,7 @@ pub(crate) fn module(compiled: &Compiled) -> TokenStream {
     let functions = functions();
     let tables = tables(&compiled.tables);
     let units = Literal::usize_unsuffixed(compiled.tables.units.len());
-    let channels = Literal::usize_unsuffixed(2 * compiled.tables.units.len());
+    let channels = Literal::usize_unsuffixed(compiled.tables.channels());
     let scale = wrench(compiled.scale());
     let ardupilot_scale = wrench(compiled.ardupilot_scale());
     let betaflight_scale = wrench(compiled.betaflight_scale());
@@ -49,6 +50,16 @@ pub(crate) fn module(compiled: &Compiled) -> TokenStream {
         ),
     ]);
     let betaflight_expo = Literal::f32_unsuffixed(compiled.betaflight_expo() as f32);
+    let [units_doc, channels_doc] = match compiled.tables.single_rotors.as_slice() {
+        [] => [
+            " Number of coaxial units.",
+            " Number of output channels, two per unit.",
+        ],
+        _ => [
+            " Number of units, pairs and single rotors.",
+            " Number of output channels, one per rotor.",
+        ],
+    };
     let format = mixer_rt::tables::FORMAT;
     let ardupilot_doc = doc(&[match &compiled.airframe.voltage {
         Some(voltage) => format!(
@@ -68,9 +79,9 @@ pub(crate) fn module(compiled: &Compiled) -> TokenStream {
                 "generated for another version of mixer-rt: use mixer-compiler or mixer-macros of its version, and generate the file anew"
             );
 
-            /// Number of coaxial units.
+            #[doc = #units_doc]
             pub const UNITS: usize = #units;
-            /// Number of output channels, two per unit.
+            #[doc = #channels_doc]
             pub const CHANNELS: usize = #channels;
             #limits
             /// What one unit of PX4's normalised setpoints asks for: see
@@ -198,11 +209,13 @@ fn module_lines(compiled: &Compiled) -> Vec<String> {
     lines.push(String::new());
     for (index, unit) in airframe.units.iter().enumerate() {
         let [x, y, z] = unit.position_m;
+        let (spin, upper) = (unit.upper_spin.name(), unit.upper_channel);
+        let rotors = match unit.lower_channel {
+            Some(lower) => format!("upper rotor {spin}: channel {upper} upper, {lower} lower"),
+            None => format!("single rotor {spin}: channel {upper}"),
+        };
         lines.push(format!(
-            " * unit {index} at ({x:?}, {y:?}, {z:?}) m, upper rotor {}: channel {} upper, {} lower{}",
-            unit.upper_spin.name(),
-            unit.upper_channel,
-            unit.lower_channel,
+            " * unit {index} at ({x:?}, {y:?}, {z:?}) m, {rotors}{}",
             airframe.named_pair(unit)
         ));
     }
@@ -235,9 +248,13 @@ fn tables(tables: &MixerTables) -> TokenStream {
     let (priorities, is_vertical) = (view.priorities.tokens(), view.is_vertical);
     let (power_bias, tolerance) = (view.power_bias_nm_per_n.tokens(), view.tolerance.tokens());
     let (basis, inverse_type) = (tables.pair.thrust.type_tokens(), tables.inverse.type_tokens());
+    let has_single_rotors = !tables.single_rotors.is_empty();
     let (alias, said) = match tables.unlike() {
         Some(_) => (
-            Some(quote!(type Kinds = tables::Unlike<'static, #basis, #inverse_type>;)),
+            Some(match has_single_rotors {
+                true => quote!(type Kinds = tables::WithSingleRotors<'static, #basis, #inverse_type>;),
+                false => quote!(type Kinds = tables::Unlike<'static, #basis, #inverse_type>;),
+            }),
             " What each kind of unit gives, and which unit is which, in place of a closed form of allocation.",
         ),
         None => (None, " The closed form of allocation, where there is one."),
@@ -246,6 +263,10 @@ fn tables(tables: &MixerTables) -> TokenStream {
     let closed_form_table = tables.closed_form.as_ref().map(ClosedFormTable::view);
     let (closed_form, closed_form_type) = match (&closed_form_table, tables.unlike()) {
         (Some(table), _) => (Part::tokens(&table), quote!(&tables::ClosedForm<'static>)),
+        (None, Some(unlike)) if has_single_rotors => {
+            let rotors = tables.single_rotors.as_slice();
+            (WithSingleRotors { unlike, rotors }.tokens(), quote!(Kinds))
+        }
         (None, Some(unlike)) => (unlike.tokens(), quote!(Kinds)),
         (None, None) => (quote!(tables::NoClosedForm), quote!(tables::NoClosedForm)),
     };

@@ -5,7 +5,7 @@ use mixer_rt::tables::{Airmode, Priorities, REQUEST_LIMIT};
 use mixer_rt::{Health, Wrench};
 use serde::Serialize;
 
-use crate::airframe::Axis;
+use crate::airframe::{Axis, Unit};
 use crate::compiled::Compiled;
 use crate::diagnostic::{Code, Diagnostic, rounded};
 use crate::model::scales;
@@ -72,20 +72,23 @@ pub struct HoverAt {
     /// Largest torques `[negative, positive]` about the served axes that are delivered with the
     /// weight, each alone, N m.
     pub margins: Vec<Margin>,
-    /// With an upper and with a lower rotor out, of those the one that leaves least yaw in its weaker sense; empty where
+    /// With an upper, a lower and a single rotor out, of those the one that leaves least yaw in its weaker sense; empty where
     /// yaw is not served.
     pub rotor_out: Vec<RotorOut>,
 }
 
 /// Hover with a rotor out.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RotorOut {
-    /// `upper` or `lower`.
+    /// `upper`, `lower` or `single`.
     pub layer: &'static str,
     /// The rotor's output.
     pub output: usize,
     /// Least and largest yaw, N m; `None` where the weight is not carried level.
     pub yaw_nm: Option<[f64; 2]>,
+    /// All outputs of the layer without which the weight is not carried level.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub not_level: Vec<usize>,
 }
 
 /// Share of the authority that hover with a rotor out may miss of roll, pitch and thrust: what priorities trade.
@@ -123,7 +126,7 @@ impl RotorOut {
             .map_or(f64::NEG_INFINITY, |[least, most]| most.min(-least))
     }
 
-    /// That of both layers beside a thrust of `weight_n` N at a voltage, V; empty where yaw is not served.
+    /// That of each layer beside a thrust of `weight_n` N at a voltage, V; empty where yaw is not served.
     fn of(compiled: &Compiled, weight_n: f64, voltage_v: Option<f64>) -> Vec<RotorOut> {
         if !compiled.airframe.allocation.controls(Axis::Yaw) {
             return Vec::new();
@@ -134,16 +137,30 @@ impl RotorOut {
             airmode: Airmode::RollPitch,
             yaw_reserve_nm: 0.0,
         };
-        let worst = |side: usize| {
-            let units = compiled.tables.units.iter();
-            let all = units.map(|unit| RotorOut {
-                layer: ["upper", "lower"][side],
-                output: unit.channels[side].into(),
-                yaw_nm: level_yaw(&tables, volts, weight_n as f32, unit.channels[side]),
+        let rotors = || compiled.airframe.units.iter().flat_map(Unit::rotors);
+        let worst = |layer: &'static str| {
+            let of_layer = rotors().filter(|rotor| rotor.layer == layer);
+            let all = of_layer.map(|rotor| RotorOut {
+                layer,
+                output: rotor.channel,
+                yaw_nm: level_yaw(&tables, volts, weight_n as f32, rotor.channel as u8),
+                not_level: Vec::new(),
             });
-            all.min_by(|a, b| a.weaker_nm().total_cmp(&b.weaker_nm()))
+            let all: Vec<RotorOut> = all.collect();
+            let not_level = all
+                .iter()
+                .filter(|out| out.yaw_nm.is_none())
+                .map(|out| out.output);
+            let not_level = not_level.collect();
+            let worst = all
+                .into_iter()
+                .min_by(|a, b| a.weaker_nm().total_cmp(&b.weaker_nm()))?;
+            Some(RotorOut { not_level, ..worst })
         };
-        [0, 1].into_iter().filter_map(worst).collect()
+        ["upper", "lower", "single"]
+            .into_iter()
+            .filter_map(worst)
+            .collect()
     }
 }
 
@@ -271,10 +288,12 @@ impl HoverAt {
                 rotor_out: Vec::new(),
             };
         };
-        // Outputs of the upper (0) and of the lower (1) rotors that have the least and the greatest throttle.
+        // Outputs of the upper (0) and of the lower (1) rotors that have the least and the greatest throttle, single ones
+        // among the upper.
         let extremes = |throttles: &[f32]| {
             [0, 1].map(|layer| {
-                let outputs = || tables.units.iter().map(|unit| usize::from(unit.channels[layer]));
+                let units = || compiled.airframe.units.iter();
+                let outputs = || units().filter_map(|unit| unit.channels().nth(layer));
                 let by_throttle = |a: &usize, b: &usize| throttles[*a].total_cmp(&throttles[*b]);
                 [outputs().min_by(by_throttle), outputs().max_by(by_throttle)].map(Option::unwrap_or_default)
             })

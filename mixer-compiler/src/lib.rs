@@ -45,6 +45,7 @@ use airframe::Airframe;
 use allocation::{closed_form, thrust_range};
 use model::PairMap;
 use model::effectiveness::Effectiveness;
+use model::feedback::Feedback;
 use model::injectivity::{self, Injectivity};
 use model::law::CorrectionTables;
 use proc_macro2::TokenStream;
@@ -94,6 +95,10 @@ fn compile_airframe(source: &Source, airframe: Airframe) -> Result<Compiled, Vec
     for other in others {
         whole.include(other);
     }
+    let stated = model
+        .feedback
+        .with_pairs(&model.airframe, whole.certificate.stated);
+    whole.certificate.stated = stated;
     let compiled = Compiled {
         source: source.clone(),
         pair: PairMap::new(&model.airframe.pair, &model.airframe.throttle),
@@ -131,6 +136,7 @@ struct Model {
     /// Of each pair the proof that it can be inverted, and the least idle.
     invertible: Vec<(Injectivity, f64)>,
     corrections: CorrectionTables,
+    feedback: Feedback,
 }
 
 impl Model {
@@ -150,7 +156,10 @@ impl Model {
             tolerances = gather(tolerances, plausible::check_tolerances(airframe), Ok(())).map(|_| ());
         }
         let (effectiveness, invertible, ()) = gather(effectiveness, invertible, tolerances)?;
+        let feedback = Feedback::new(&airframe, &effectiveness);
+        feedback.check(&airframe)?;
         Ok(Model {
+            feedback,
             corrections: CorrectionTables::new(&airframe),
             airframe,
             airframes,
@@ -167,6 +176,7 @@ impl Model {
             airframes,
             effectiveness,
             corrections,
+            feedback,
             ..
         } = self;
         let parts = Parts {
@@ -175,7 +185,14 @@ impl Model {
             effectiveness,
             corrections,
             maps: selected.iter().map(|selected| &selected.map).collect(),
-            tolerance: selection::tolerance(airframe, effectiveness, corrections, airframes, selected),
+            tolerance: selection::tolerance(
+                airframe,
+                effectiveness,
+                corrections,
+                airframes,
+                selected,
+                feedback,
+            ),
         };
         let pair = PairMap::new(&airframe.pair, &airframe.throttle);
         let (closed_form, lost_outside_border) = match closed_form::table(airframe, effectiveness, &pair) {

@@ -5,6 +5,7 @@
 //! density, `physics` the wrench of given throttles.
 
 pub mod effectiveness;
+pub(crate) mod feedback;
 pub mod injectivity;
 pub mod law;
 mod pair_map;

@@ -103,8 +103,7 @@ fn at(compiled: &Compiled, tables: &MixerTables, thrust_n: f64) -> Option<(f64, 
     };
     let thrust = |is_out: [bool; 2]| -> f64 {
         let of_unit = |unit: &Unit| {
-            let channels = [unit.upper_channel, unit.lower_channel];
-            let out = channels.into_iter().zip(is_out).filter(|(_, is_out)| *is_out);
+            let out = unit.channels().zip(is_out).filter(|(_, is_out)| *is_out);
             let health = out.fold(Health::GOOD, |health, (channel, _)| {
                 health.with_failed(channel as u8)
             });

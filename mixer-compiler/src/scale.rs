@@ -143,9 +143,12 @@ impl Rotors<'_> {
         let columns = self.columns_alike();
         let axes = &self.airframe.allocation.axes;
         let units = &self.airframe.units;
-        let channels = units.iter().map(|unit| unit.upper_channel);
+        let channels = units.iter().map(|unit| Some(unit.upper_channel));
         let channels = channels.chain(units.iter().map(|unit| unit.lower_channel));
-        let mut rotors: Vec<(usize, usize)> = channels.zip(0..).collect();
+        let rotors = channels
+            .zip(0..)
+            .filter_map(|(channel, rotor)| Some((channel?, rotor)));
+        let mut rotors: Vec<(usize, usize)> = rotors.collect();
         rotors.sort_unstable();
         let factor = |axis: Axis, rotor: usize| {
             let row = axes.iter().position(|served| *served == axis);
@@ -225,9 +228,11 @@ impl Rotors<'_> {
         let mut rotors = vec![[0.0; 8]; self.airframe.rotors()];
         for (index, unit) in self.airframe.units.iter().enumerate() {
             let [thrust, torque] = self.per_rotor(index);
-            let upper = (unit.upper_channel, unit.upper_spin, LAYER_M);
-            let lower = (unit.lower_channel, unit.upper_spin.reversed(), -LAYER_M);
-            for (channel, spin, layer_m) in [upper, lower] {
+            let lower = unit.lower_channel;
+            let layer_m = if lower.is_some() { LAYER_M } else { 0.0 };
+            let upper = (unit.upper_channel, unit.upper_spin, layer_m);
+            let lower = lower.map(|lower| (lower, unit.upper_spin.reversed(), -layer_m));
+            for (channel, spin, layer_m) in std::iter::once(upper).chain(lower) {
                 let sign = if spin == Spin::Ccw { 1.0 } else { -1.0 };
                 let [ax, ay, az] = unit.axis;
                 let [px, py, pz] = std::array::from_fn(|k| unit.position_m[k] + layer_m * unit.axis[k]);
@@ -249,8 +254,11 @@ impl Rotors<'_> {
         } else {
             1
         };
-        let each: Vec<[f64; 2]> = (0..units).map(|unit| self.per_rotor(unit)).collect();
-        let mean = [0, 1].map(|k| each.iter().map(|efforts| efforts[k]).sum::<f64>() / units as f64);
+        let each: Vec<(f64, [f64; 2])> = (0..units)
+            .map(|unit| (self.rotors_of(unit), self.per_rotor(unit)))
+            .collect();
+        let rotors: f64 = each.iter().map(|(rotors, _)| rotors).sum();
+        let mean = [0, 1].map(|k| each.iter().map(|(rotors, of)| rotors * of[k]).sum::<f64>() / rotors);
         self.columns_of(|_| mean)
     }
 
@@ -265,8 +273,10 @@ impl Rotors<'_> {
             let (by_thrust, by_torque) = (thrust * matrix[(axis, i)], torque * matrix[(axis, n + i)]);
             if rotor < n {
                 by_thrust - by_torque
-            } else {
+            } else if self.airframe.units[i].lower_channel.is_some() {
                 by_thrust + by_torque
+            } else {
+                0.0
             }
         })
     }
@@ -275,10 +285,24 @@ impl Rotors<'_> {
         [self.airframe.throttle.min, self.airframe.throttle.max]
     }
 
+    /// How many rotors a unit has.
+    fn rotors_of(&self, unit: usize) -> f64 {
+        self.airframe.units[unit].channels().count() as f64
+    }
+
     /// c and d of a unit's rotors, N and N m.
     pub(crate) fn per_rotor(&self, unit: usize) -> [f64; 2] {
         let (map, [min, max]) = (&self.maps[unit], self.range());
         let [k_f, k_q] = self.airframe.voltage_factors(self.voltage_v);
+        if let Some(curve) = self.airframe.curve_of(&self.airframe.units[unit]) {
+            // Its torque has the sign of an upper rotor.
+            let [full, torque] = curve.efforts(max);
+            let torque = self.hover_throttle().map_or(torque, |h| {
+                let [rise, by_t] = curve.slopes(h);
+                by_t * full / rise
+            });
+            return [full * k_f, -torque * k_q];
+        }
         let full = map.efforts([max, max])[0];
         let torque = match self.hover_throttle() {
             Some(h) => {
@@ -296,7 +320,7 @@ impl Rotors<'_> {
         if !self.airframe.is_unlike() {
             return self.slope_of(0);
         }
-        let full = |unit: usize| 2.0 * self.per_rotor(unit)[0];
+        let full = |unit: usize| self.rotors_of(unit) * self.per_rotor(unit)[0];
         let units = 0..self.maps.len();
         let slopes = units.clone().map(|unit| Some(full(unit) * self.slope_of(unit)?));
         Some(slopes.sum::<Option<f64>>()? / units.map(full).sum::<f64>())
@@ -400,8 +424,8 @@ mod tests {
         let [min, max] = compiled.pair.range();
         let wrench = |outputs: &dyn Fn(usize) -> f64| -> [f64; 4] {
             let efforts = compiled.airframe.units.iter().map(|unit| {
-                let outputs = [unit.upper_channel, unit.lower_channel].map(outputs);
-                compiled.pair.efforts(outputs)
+                let outputs: Vec<f64> = unit.channels().map(outputs).collect();
+                compiled.pair.efforts([outputs[0], outputs[1]])
             });
             let efforts: Vec<[f64; 2]> = efforts.collect();
             let (matrix, n) = (&compiled.effectiveness.matrix, efforts.len());

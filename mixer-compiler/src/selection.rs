@@ -9,6 +9,7 @@ use crate::diagnostic::Diagnostic;
 use crate::inverse::evaluator::Evaluator;
 use crate::inverse::fit::{Inversion, Samples};
 use crate::model::effectiveness::Effectiveness;
+use crate::model::feedback::Feedback;
 use crate::model::law::{self, CorrectionTables};
 use crate::model::{PairMap, scales};
 use crate::proof::residual::Residual;
@@ -150,6 +151,7 @@ pub(crate) fn tolerance(
     corrections: &CorrectionTables,
     airframes: &[Airframe],
     selected: &[Selected],
+    feedback: &Feedback,
 ) -> Tolerance {
     // The mixer compares what it computes, not what is: a request that is delivered must not look
     // missed.
@@ -160,15 +162,43 @@ pub(crate) fn tolerance(
         efforts = [0, 1].map(|k| efforts[k].max(certificate.reference[k] + rounding[k]));
         stated = [0, 1].map(|k| stated[k].max(certificate.stated[k]));
     }
-    tables::tolerance_table(efforts, wrench_tolerance(airframe, effectiveness, stated))
+    if !airframe.single_rotors.is_empty() {
+        efforts[0] = efforts[0].max(feedback.thrust_n + ROUNDING * largest_thrust(airframe));
+    }
+    let wrench = wrench_tolerance(airframe, effectiveness, stated, feedback);
+    tables::tolerance_table(efforts, wrench)
+}
+
+/// Rounding of sums in f32 as a share of full efforts.
+const ROUNDING: f64 = 4e-6;
+
+/// Of any unit, N.
+fn largest_thrust(airframe: &Airframe) -> f64 {
+    let scales = scales(airframe, [1.0; 2]);
+    scales.iter().fold(0.0, |most, scale| most.max(scale[0]))
 }
 
 /// What the units' misses `stated` add up to on each axis, with the rounding of f32 sums of full
 /// efforts.
-fn wrench_tolerance(airframe: &Airframe, effectiveness: &Effectiveness, stated: [f64; 2]) -> [f64; 4] {
-    const ROUNDING: f64 = 4e-6;
+fn wrench_tolerance(
+    airframe: &Airframe,
+    effectiveness: &Effectiveness,
+    stated: [f64; 2],
+    feedback: &Feedback,
+) -> [f64; 4] {
     let factors = law::largest_factors(airframe);
-    let allowed = |scale: [f64; 2]| [0, 1].map(|k: usize| stated[k] + ROUNDING * scale[k] * factors[k]);
-    let allowed: Vec<[f64; 2]> = scales(airframe, [1.0; 2]).into_iter().map(allowed).collect();
+    let sizes = scales(airframe, [1.0; 2]).into_iter();
+    let units = airframe.units.iter().zip(&feedback.missed).zip(sizes);
+    let allowed = units.map(|((unit, missed), scale)| {
+        [0, 1].map(|k: usize| {
+            let own = if unit.lower_channel.is_some() {
+                stated[k]
+            } else {
+                0.0
+            };
+            own + (missed[k] + ROUNDING * scale[k]) * factors[k]
+        })
+    });
+    let allowed: Vec<[f64; 2]> = allowed.collect();
     std::array::from_fn(|axis| effectiveness.largest(axis, &allowed))
 }

@@ -14,8 +14,9 @@ mod single;
 use mixer_rt::{
     Conditions, Health, Saturation, SetpointError, Wrench,
     tables::{
-        AllocationMethod, Border, Cell, ClosedForm, ClosedFormUnit, Facets, Inverse, Kind, Pair, Priorities,
-        SingleRotor, Steep, Tables, ThrottleRange, Tolerance, Unit, UnitState, Unlike,
+        AllocationMethod, Border, Cell, ClosedForm, ClosedFormUnit, Facets, Inverse, Kind, NO_CHANNEL,
+        PASSES, Pair, Priorities, SingleRotor, Steep, Tables, ThrottleRange, Tolerance, Unit, UnitState,
+        Unlike,
     },
 };
 
@@ -28,7 +29,7 @@ use crate::model::law::{CorrectionTables, LawTable};
 pub(crate) use part::{Part, identifier};
 pub use quantity::QuantityTable;
 use rows::rows;
-use single::single_tables;
+use single::{curve_table, single_tables};
 
 /// The tables of one airframe.
 #[derive(Clone, Debug, PartialEq)]
@@ -61,7 +62,9 @@ pub struct MixerTables {
     pub closed_form: Option<ClosedFormTable>,
     /// What each pair gives, where they differ.
     pub kinds: Vec<Kind<QuantityTable, InverseTable>>,
-    /// Which of these each unit is.
+    /// Thrust and torque of each kind of single rotor.
+    pub single_rotors: Vec<[SingleRotor; 2]>,
+    /// Which of these each unit is: of the pairs, then of the single rotors.
     pub kind_of: Vec<u8>,
     /// Largest errors of the mixer.
     pub tolerance: Tolerance,
@@ -72,10 +75,13 @@ pub struct MixerTables {
 pub struct AnyMethod<'a> {
     closed_form: Option<ClosedForm<'a>>,
     unlike: Option<Unlike<'a, QuantityTable, InverseTable>>,
+    single_rotors: &'a [[SingleRotor; 2]],
 }
 
 impl AllocationMethod<QuantityTable> for AnyMethod<'_> {
     type Inverse = InverseTable;
+
+    const MAY_HAVE_SINGLE_ROTORS: bool = true;
 
     fn closed_form(&self) -> Option<&ClosedForm<'_>> {
         self.closed_form.as_ref()
@@ -83,6 +89,10 @@ impl AllocationMethod<QuantityTable> for AnyMethod<'_> {
 
     fn unlike(&self) -> Option<&Unlike<'_, QuantityTable, InverseTable>> {
         self.unlike.as_ref()
+    }
+
+    fn single_rotors(&self) -> &[[SingleRotor; 2]] {
+        self.single_rotors
     }
 }
 
@@ -208,6 +218,13 @@ impl MixerTables {
                 false => airframe.units.iter().map(|unit| unit.pair as u8).collect(),
             },
             kinds,
+            single_rotors: {
+                let curves = airframe
+                    .single_rotors
+                    .iter()
+                    .filter_map(|rotor| rotor.lower_out.as_ref());
+                curves.map(|curve| [curve_table(curve); 2]).collect()
+            },
             tolerance: parts.tolerance,
         }
     }
@@ -241,6 +258,7 @@ impl MixerTables {
             closed_form: AnyMethod {
                 closed_form: self.closed_form.as_ref().map(ClosedFormTable::view),
                 unlike: self.unlike(),
+                single_rotors: &self.single_rotors,
             },
             tolerance: self.tolerance,
         }
@@ -250,11 +268,6 @@ impl MixerTables {
     pub(crate) fn unlike(&self) -> Option<Unlike<'_, QuantityTable, InverseTable>> {
         let (kinds, of) = (self.kinds.as_slice(), self.kind_of.as_slice());
         (!kinds.is_empty()).then_some(Unlike { kinds, of })
-    }
-
-    /// What a unit, by index, has in place of the tables' own maps, where units differ.
-    fn kind(&self, unit: usize) -> Option<&Kind<QuantityTable, InverseTable>> {
-        self.kinds.get(usize::from(*self.kind_of.get(unit)?))
     }
 
     /// The same tables where all units have this one of the pairs.
@@ -268,16 +281,21 @@ impl MixerTables {
             inverse: kind.inverse,
             mean_square_slopes: kind.mean_square_slopes,
             kinds: Vec::new(),
+            single_rotors: Vec::new(),
             kind_of: Vec::new(),
             ..self.clone()
         }
     }
 
+    /// Number of output channels.
+    pub fn channels(&self) -> usize {
+        let channels = self.units.iter().flat_map(|unit| unit.channels);
+        channels.filter(|channel| *channel != NO_CHANNEL).count()
+    }
+
     /// Efforts `[f, Q]` of a unit, by index, at throttles `[u, l]`, N and N m at the reference voltage.
     pub(crate) fn efforts_of(&self, unit: usize, throttles: [f32; 2]) -> [f32; 2] {
-        self.kind(unit)
-            .map_or(&self.pair, |kind| &kind.pair)
-            .efforts(throttles)
+        self.view().efforts_of(unit, throttles)
     }
 
     /// The same tables with another power bias, to compare with.
@@ -314,7 +332,7 @@ impl MixerTables {
         health: Health,
     ) -> Result<AnyMix, SetpointError> {
         let states = || vec![UnitState::default(); self.units.len()];
-        let mut throttle = vec![self.throttle.min; 2 * self.units.len()];
+        let mut throttle = vec![self.throttle.min; self.channels()];
         let (achieved, saturation) = mixer_rt::tables::mix_into(
             &self.view(),
             setpoint,
@@ -329,19 +347,34 @@ impl MixerTables {
     /// Throttles `[u, l]` of the units for the efforts of least norm at `[k_f, k_Q]`; `None` where some
     /// unit cannot give them.
     pub(crate) fn least_norm(&self, wrench: [f32; 4], factors: [f64; 2]) -> Option<Vec<[f32; 2]>> {
+        let view = self.view();
+        let effort = |unit: &Unit, asked: [f32; 4], k: usize| -> f32 {
+            let parts = unit.allocation[k].iter().zip(asked);
+            parts.map(|(share, asked)| share * asked).sum::<f32>() / factors[k] as f32
+        };
+        // The wrench less what the torques of single rotors differ from their share in M+ by.
+        let mut asked = wrench;
+        for _ in 0..PASSES {
+            let mut next = wrench;
+            for (index, unit) in self.units.iter().enumerate() {
+                let Some(curve) = view.curve_of(index) else {
+                    continue;
+                };
+                let [f, q] = [0, 1].map(|k| effort(unit, asked, k));
+                let [_, given] = curve.efforts(curve.throttle(&self.throttle, f));
+                for (next, effect) in next.iter_mut().zip(unit.effectiveness[1]) {
+                    *next -= effect * factors[1] as f32 * (given - q);
+                }
+            }
+            asked = next;
+        }
         let one = |(index, unit): (usize, &Unit)| {
-            let effort = |k: usize| -> f32 {
-                let parts = unit.allocation[k].iter().zip(wrench);
-                parts.map(|(share, asked)| share * asked).sum::<f32>() / factors[k] as f32
-            };
-            let wanted = [effort(0), effort(1)];
-            let throttles = match self.kind(index) {
-                Some(kind) => kind.inverse.throttles(&kind.pair, &self.throttle, wanted),
-                None => self.throttles(wanted),
-            };
-            let given = self.efforts_of(index, throttles);
+            let wanted = [0, 1].map(|k| effort(unit, asked, k));
+            let throttles = view.throttles_of(index, wanted);
+            let given = view.efforts_of(index, throttles);
             let gives = |k: usize| (given[k] - wanted[k]).abs() <= self.tolerance.efforts[k];
-            (gives(0) && gives(1)).then_some(throttles)
+            // The torque of a single rotor was fed back.
+            (gives(0) && (gives(1) || view.curve_of(index).is_some())).then_some(throttles)
         };
         self.units.iter().enumerate().map(one).collect()
     }
@@ -349,7 +382,7 @@ impl MixerTables {
     /// Bytes of the tables in flash.
     pub fn bytes(&self) -> usize {
         let view = self.view();
-        let parts: [&dyn Part; 15] = [
+        let parts: [&dyn Part; 16] = [
             &view.units,
             &view.pair,
             &view.singles,
@@ -364,6 +397,7 @@ impl MixerTables {
             &view.power_bias_nm_per_n,
             &view.closed_form.closed_form,
             &view.closed_form.unlike,
+            &view.closed_form.single_rotors,
             &view.tolerance,
         ];
         parts.into_iter().map(Part::bytes).sum()
@@ -429,7 +463,7 @@ fn unit_tables(airframe: &Airframe, effectiveness: &Effectiveness) -> Vec<Unit> 
         .map(|(i, unit)| Unit {
             allocation: [row(i), row(n + i)],
             effectiveness: [column(i), column(n + i)],
-            channels: [unit.upper_channel as u8, unit.lower_channel as u8],
+            channels: unit.channel_table(),
         })
         .collect()
 }

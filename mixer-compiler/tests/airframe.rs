@@ -70,7 +70,7 @@ fn isae_x8_is_as_in_the_paper() {
     assert_eq!(airframe.units[1].axis, [0.0, 0.0, -1.0]);
     assert_eq!(
         (airframe.units[3].upper_channel, airframe.units[3].lower_channel),
-        (3, 7)
+        (3, Some(7))
     );
     let voltage = airframe.voltage.unwrap();
     assert_eq!(voltage.thrust, Law::Exponent(1.75));
@@ -102,7 +102,7 @@ fn the_guide_s_units_are_those_of_px4() {
                 y,
                 unit.upper_spin,
                 unit.upper_channel + 1,
-                unit.lower_channel + 1,
+                unit.lower_channel.unwrap() + 1,
             )
         })
         .collect();
@@ -146,9 +146,9 @@ fn layout_expands_to_units_clockwise_from_the_nose() {
     let channels: Vec<_> = airframe
         .units
         .iter()
-        .map(|unit| (unit.upper_channel, unit.lower_channel))
+        .map(|unit| unit.channels().collect::<Vec<_>>())
         .collect();
-    assert_eq!(channels, [(0, 4), (1, 5), (2, 6), (3, 7)]);
+    assert_eq!(channels, [[0, 4], [1, 5], [2, 6], [3, 7]]);
 }
 
 #[test]

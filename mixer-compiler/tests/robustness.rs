@@ -23,7 +23,7 @@ fn read(text: &str) -> Result<(), TestCaseError> {
             let mut outputs: Vec<_> = airframe
                 .units
                 .iter()
-                .flat_map(|unit| [unit.upper_channel, unit.lower_channel])
+                .flat_map(mixer_compiler::airframe::Unit::channels)
                 .collect();
             outputs.sort_unstable();
             prop_assert!(!outputs.is_empty() && outputs.iter().copied().eq(0..outputs.len()));

@@ -28,7 +28,7 @@
 pub(crate) mod closed_form;
 mod frame;
 pub(crate) mod interior;
-mod least_norm;
+pub(crate) mod least_norm;
 pub(crate) mod power_bias;
 pub(crate) mod priorities;
 mod request;
@@ -60,7 +60,7 @@ pub(crate) fn allocate<P: Quantity, I: Inverse, S: AllocationMethod<P>, const VE
     let (tables, units) = black_box((tables, units));
     let frame = Frame::<_, _, _, VERTICAL>::new(tables, factors);
     if is_whole {
-        if frame.serve_by_least_norm(wrench, units) {
+        if frame.serve(wrench, units) {
             return true;
         }
         if !frame.cut(wrench, units, is_whole) {

@@ -14,9 +14,12 @@ pub struct Unit {
     /// Columns of the effectiveness M (4 x 2n, eq. (5)): `[roll, pitch, yaw, thrust]` per N of this
     /// unit's thrust and per N m of its torque.
     pub effectiveness: [[f32; 4]; 2],
-    /// Channels of the upper and of the lower rotor.
+    /// Channels of the upper and of the lower rotor; the lower one of a single rotor is [`NO_CHANNEL`].
     pub channels: [u8; 2],
 }
+
+/// The channel of a rotor that does not exist, beyond those of any frame.
+pub const NO_CHANNEL: u8 = 255;
 
 impl Unit {
     /// This unit's least-norm efforts `[f, Q]` for a wrench `[roll, pitch, yaw, thrust]`: two rows
@@ -97,6 +100,23 @@ impl<P: Quantity, I: Inverse, S: AllocationMethod<P>> Tables<'_, P, I, S> {
         unlike.kinds.get(usize::from(*unlike.of.get(unit)?))
     }
 
+    /// The rows of a unit that is a single rotor.
+    #[inline(always)]
+    fn single_rotor(&self, unit: usize) -> Option<&[SingleRotor; 2]> {
+        if !S::MAY_HAVE_SINGLE_ROTORS {
+            return None;
+        }
+        let unlike = self.closed_form.unlike()?;
+        let place = usize::from(*unlike.of.get(unit)?).checked_sub(unlike.kinds.len())?;
+        self.closed_form.single_rotors().get(place)
+    }
+
+    /// Thrust and torque of a unit that is a single rotor, over its throttle; `None` of a pair.
+    #[inline(always)]
+    pub fn curve_of(&self, unit: usize) -> Option<&SingleRotor> {
+        self.single_rotor(unit).map(|[curve, _]| curve)
+    }
+
     /// The forward map of a unit.
     #[inline(always)]
     pub fn pair_of(&self, unit: usize) -> &Pair<P> {
@@ -106,6 +126,9 @@ impl<P: Quantity, I: Inverse, S: AllocationMethod<P>> Tables<'_, P, I, S> {
     /// The rotors alone.
     #[inline(always)]
     pub(crate) fn singles_of(&self, unit: usize) -> &[SingleRotor; 2] {
+        if let Some(rows) = self.single_rotor(unit) {
+            return rows;
+        }
         self.kind(unit).map_or(&self.singles, |kind| &kind.singles)
     }
 
@@ -116,9 +139,21 @@ impl<P: Quantity, I: Inverse, S: AllocationMethod<P>> Tables<'_, P, I, S> {
             .map_or(self.mean_square_slopes, |kind| kind.mean_square_slopes)
     }
 
-    /// Throttles for `efforts`, N and N m at the reference voltage.
+    /// Efforts of a unit all of whose rotors turn.
     #[inline(always)]
-    pub(crate) fn throttles_of(&self, unit: usize, efforts: [f32; 2]) -> [f32; 2] {
+    pub fn efforts_of(&self, unit: usize, throttles: [f32; 2]) -> [f32; 2] {
+        match self.curve_of(unit) {
+            Some(curve) => curve.efforts(throttles[0]),
+            None => self.pair_of(unit).efforts(throttles),
+        }
+    }
+
+    /// Throttles for `efforts`, N and N m at the reference voltage. A single rotor has those of the thrust.
+    #[inline(always)]
+    pub fn throttles_of(&self, unit: usize, efforts: [f32; 2]) -> [f32; 2] {
+        if let Some(curve) = self.curve_of(unit) {
+            return [curve.throttle(&self.throttle, efforts[0]), 0.0];
+        }
         match self.kind(unit) {
             None => self.inverse.throttles(&self.pair, &self.throttle, efforts),
             Some(kind) => kind.inverse.throttles(&kind.pair, &self.throttle, efforts),

@@ -141,9 +141,12 @@ fn mix_in_general<P: Quantity, I: Inverse, S: AllocationMethod<P>>(
     let states = states.get_mut(..units.len()).unwrap_or_default();
     // With a closed form, rotors are out. So the compiler leaves out what only whole frames need.
     let mut is_whole = tables.closed_form.closed_form().is_none();
-    for (unit, state) in units.iter().zip(states.iter_mut()) {
+    for (index, (unit, state)) in units.iter().zip(states.iter_mut()).enumerate() {
         state.rotors = Rotors::of(unit.channels, health);
         is_whole &= state.rotors.are_both();
+        if tables.curve_of(index).is_some() {
+            state.rotors = state.rotors.without_lower();
+        }
     }
     let is_least_norm = if tables.is_vertical {
         allocate::<_, _, _, true>(tables, &bounded, factors, states, is_whole)

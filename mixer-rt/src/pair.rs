@@ -5,10 +5,10 @@ mod forward;
 mod inverse;
 mod kind;
 pub(crate) mod rotors;
-mod single;
+pub(crate) mod single;
 
 pub(crate) use forward::Expansion;
 pub use forward::{Biquadratic, Cubic, Pair, Quantity, Quartic};
 pub use inverse::{Coefficients, Inverse, PolynomialInverse, ThrottleRange, solve};
-pub use kind::{Kind, Unlike};
+pub use kind::{Kind, Unlike, WithSingleRotors};
 pub use single::SingleRotor;

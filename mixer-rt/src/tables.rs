@@ -11,13 +11,14 @@ pub use crate::allocate::closed_form::{
     Steep,
 };
 pub use crate::allocate::interior::MOST_ITERATIONS;
+pub use crate::allocate::least_norm::PASSES;
 pub use crate::allocate::priorities::{Airmode, Priorities, REQUEST_LIMIT};
 pub use crate::allocate::unit::UnitState;
 pub use crate::arithmetic::{Scalar, sqrt};
 pub use crate::conditions::{Law, LawPiece};
-pub use crate::layout::{Tables, Tolerance, Unit};
+pub use crate::layout::{NO_CHANNEL, Tables, Tolerance, Unit};
 pub use crate::mix::{Sealed, mix, mix_into};
 pub use crate::pair::{
     Biquadratic, Coefficients, Cubic, Inverse, Kind, Pair, PolynomialInverse, Quantity, Quartic, SingleRotor,
-    ThrottleRange, Unlike, solve,
+    ThrottleRange, Unlike, WithSingleRotors, solve,
 };

@@ -263,7 +263,7 @@ fn frames_of_the_zoo_end_where_they_should() {
         drawn += 1;
         let frame = Frame::new(compiled);
         let weight_n = weight_n(&frame);
-        let channel = random.below(2 * frame.physics.units()) as u8;
+        let channel = random.below(frame.physics.rotors()) as u8;
         // Level flight at that weight, and a tenth of the yaw either way beside it: else the vehicle cannot hold a heading.
         let has = |yaw: f64| {
             let request = mixer_tests::request::Request {

@@ -179,7 +179,7 @@ pub(crate) struct Draw {
 impl Draw {
     /// The request to a frame.
     pub(crate) fn of(&self, frame: &Frame) -> Request {
-        let rotors = 2 * frame.physics.units();
+        let rotors = frame.physics.rotors();
         let health = self.out.iter().fold(Health::GOOD, |health, index| {
             health.with_failed(index.index(rotors) as u8)
         });

@@ -51,7 +51,7 @@ impl Tally {
 /// Wrenches of random throttles.
 fn deliver(frame: &Frame, random: &mut Random, count: usize, tally: &mut Tally) {
     for _ in 0..count {
-        let shares: Vec<f64> = (0..2 * frame.physics.units())
+        let shares: Vec<f64> = (0..frame.physics.rotors())
             .map(|_| random.uniform(MARGIN, 1.0 - MARGIN))
             .collect();
         let throttles = frame.physics.throttles(shares.into_iter(), Health::GOOD);

@@ -158,7 +158,7 @@ fn a_reserve_takes_neither_roll_nor_pitch_and_raises_no_thrust() {
             let mut request = kept.draw(&mut random, 1.0, 0.0);
             let is_whole = index % 3 > 0;
             if !is_whole {
-                request.health = out(&[random.below(2 * kept.physics.units()) as u8]);
+                request.health = out(&[random.below(kept.physics.rotors()) as u8]);
             }
             let answer = request.mix(kept).expect("finite");
             let unsound = soundness::fault(kept, &request, &answer).expect("solved");

@@ -154,11 +154,7 @@ fn compare(name: &str, compiled: &Compiled) -> [Row; 4] {
         least_norm.count(request, wrench(&throttles), authority);
         let given = |(throttles, _): (Vec<f32>, bool)| {
             let units = compiled.airframe.units.iter();
-            let pairs: Vec<[f64; 2]> = units
-                .map(|unit| {
-                    [unit.upper_channel, unit.lower_channel].map(|channel| f64::from(throttles[channel]))
-                })
-                .collect();
+            let pairs: Vec<[f64; 2]> = units.map(|unit| unit.throttles(&throttles)).collect();
             wrench(&pairs)
         };
         if let Ok(mix) = isolated.conventional(&setpoint, reference_v) {

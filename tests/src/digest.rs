@@ -9,14 +9,14 @@ use mixer_setpoints::{Digest, Mixture, RotorsOut};
 /// them.
 pub fn of(compiled: &Compiled, count: usize, rotors_out: u32) -> Vec<u64> {
     let tables = compiled.tables.view();
-    let healths = RotorsOut::new(Digest::SEED, 2 * tables.units.len(), rotors_out);
+    let healths = RotorsOut::new(Digest::SEED, compiled.tables.channels(), rotors_out);
     let mut setpoints = Mixture::new(&tables, Digest::SEED).zip(healths);
     let mut digest = Digest::new();
     let mut tenths = Vec::new();
     for _ in 0..10 {
         for (setpoint, health) in setpoints.by_ref().take(count / 10) {
             let wrench = Wrench::from_array(setpoint.wrench);
-            let mut throttle = vec![tables.throttle.min; 2 * tables.units.len()];
+            let mut throttle = vec![tables.throttle.min; compiled.tables.channels()];
             let mixed = mixer_rt::tables::mix_into(
                 &tables,
                 &wrench,

@@ -21,7 +21,7 @@ use microlp::Error;
 use mixer_compiler::model::PairMap;
 use mixer_rt::{Health, tables::Airmode};
 
-use crate::physics::Physics;
+use crate::physics::{NONE, Physics};
 use programme::{Goal, Point, Programme, Quantity, Ranges};
 
 /// Border points per edge of the throttle box.
@@ -111,7 +111,8 @@ impl Oracle {
         health: Health,
         is_cut: bool,
     ) -> Self {
-        let failed = |channel| is_out(health, channel);
+        // The lower rotor that a single one does not have is out, too.
+        let failed = |channel| channel == NONE || is_out(health, channel);
         let sets = physics.channels.iter().enumerate().map(|(i, channels)| {
             let pair = &physics.pairs[i];
             let efforts = match channels.map(failed) {

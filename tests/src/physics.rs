@@ -7,6 +7,9 @@ use mixer_compiler::model::PairMap;
 use mixer_rt::Health;
 use nalgebra::{Matrix4xX, MatrixXx4, Vector3};
 
+/// The output of a rotor that does not exist.
+pub const NONE: usize = usize::MAX;
+
 /// Newton steps that tell whether efforts are attainable.
 const STEPS: usize = 40;
 
@@ -38,7 +41,7 @@ pub struct Physics {
     pub matrix: Matrix4xX<f64>,
     /// M+, 2n x 4.
     pseudo_inverse: MatrixXx4<f64>,
-    /// Outputs of the upper and of the lower rotor, per unit.
+    /// Outputs of the upper and of the lower rotor, per unit; [`NONE`] of the lower rotor that a single one does not have.
     pub channels: Vec<[usize; 2]>,
     /// Of voltage and of density.
     corrections: [Option<Correction>; 2],
@@ -61,7 +64,7 @@ impl Physics {
             channels: airframe
                 .units
                 .iter()
-                .map(|unit| [unit.upper_channel, unit.lower_channel])
+                .map(|unit| [unit.upper_channel, unit.lower_channel.unwrap_or(NONE)])
                 .collect(),
             corrections: [airframe.voltage.clone(), airframe.air.clone()],
             alone: pairs()
@@ -73,6 +76,18 @@ impl Physics {
     /// Number of units.
     pub fn units(&self) -> usize {
         self.channels.len()
+    }
+
+    /// Number of rotors.
+    pub fn rotors(&self) -> usize {
+        let channels = self.channels.as_flattened().iter();
+        channels.filter(|channel| **channel != NONE).count()
+    }
+
+    /// Thrust and torque of a unit that is a single rotor.
+    pub fn curve(&self, unit: usize) -> Option<&RotorAlone> {
+        let is_single = self.channels[unit][1] == NONE;
+        self.alone[unit][0].as_ref().filter(|_| is_single)
     }
 
     /// Whether torques give yaw alone, and thrusts none: all axes are vertical.
@@ -142,7 +157,7 @@ impl Physics {
     /// The same under a correction.
     pub fn wrench_in(&self, throttle: &[f32], factors: [f64; 2]) -> [f64; 4] {
         let efforts = self.channels.iter().enumerate().map(|(unit, channels)| {
-            let throttles = channels.map(|channel| f64::from(throttle[channel]));
+            let throttles = channels.map(|channel| throttle.get(channel).map_or(0.0, |x| f64::from(*x)));
             self.given(unit, throttles)
         });
         self.wrench_of(efforts, factors)
@@ -222,16 +237,49 @@ impl Physics {
         })
     }
 
-    /// True where the least-norm efforts M+ `wrench` are attainable for every unit.
+    /// True where the least-norm efforts M+ `wrench` are attainable for every unit; with single rotors M+ of the wrench
+    /// from which what their torques differ from their share is taken.
     pub fn least_norm_attains(&self, wrench: [f64; 4], factors: [f64; 2]) -> bool {
+        const PASSES: usize = 40;
         let n = self.units();
-        let effort = |row: usize, factor: f64| -> f64 {
-            (0..4)
-                .map(|axis| self.pseudo_inverse[(row, axis)] * wrench[axis])
-                .sum::<f64>()
-                / factor
+        let effort = |asked: &[f64; 4], row: usize, factor: f64| -> f64 {
+            let shares = (0..4).map(|axis| self.pseudo_inverse[(row, axis)] * asked[axis]);
+            shares.sum::<f64>() / factor
         };
-        (0..n).all(|i| self.attains(i, [effort(i, factors[0]), effort(n + i, factors[1])]))
+        let mut asked = wrench;
+        for _ in 0..PASSES {
+            let mut next = wrench;
+            for (i, curve) in (0..n).filter_map(|i| Some((i, self.curve(i)?))) {
+                let [f, q] = [(i, factors[0]), (n + i, factors[1])].map(|(row, k)| effort(&asked, row, k));
+                let off = curve.efforts(self.throttle_of(curve, f))[1] - q;
+                for (axis, next) in next.iter_mut().enumerate() {
+                    *next -= self.matrix[(axis, n + i)] * factors[1] * off;
+                }
+            }
+            asked = next;
+        }
+        (0..n).all(|i| {
+            let wanted = [effort(&asked, i, factors[0]), effort(&asked, n + i, factors[1])];
+            let Some(curve) = self.curve(i) else {
+                return self.attains(i, wanted);
+            };
+            let [least, most] = self.pair.range().map(|throttle| curve.efforts(throttle)[0]);
+            (least..=most).contains(&wanted[0])
+        })
+    }
+
+    /// The throttle of a single rotor's thrust, N, within the range.
+    fn throttle_of(&self, curve: &RotorAlone, thrust_n: f64) -> f64 {
+        let [mut low, mut high] = self.pair.range();
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if curve.efforts(middle)[0] < thrust_n {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        low
     }
 
     /// The throttle at `share` of the allowed range, rounded into it.
@@ -249,7 +297,7 @@ impl Physics {
 
     /// Throttles per output for shares of the allowed range; stopped rotors at 0.
     pub fn throttles(&self, shares: impl Iterator<Item = f64>, health: Health) -> Vec<f32> {
-        (0..2 * self.units() as u8)
+        (0..self.rotors() as u8)
             .zip(shares)
             .map(|(channel, share)| {
                 if health.has_failed(channel) {

@@ -79,7 +79,7 @@ pub fn faults_of_form(frame: &Frame, request: &Request, answer: &Answer) -> impl
 /// Throttles within the range, stopped rotors at 0.
 fn throttles(frame: &Frame, request: &Request, answer: &Answer) -> Option<Fault> {
     let range = frame.compiled.airframe.throttle;
-    let count = 2 * frame.physics.units();
+    let count = frame.physics.rotors();
     let fault = |size: f64, said: String| Fault {
         kind: FaultKind::Throttle,
         size,

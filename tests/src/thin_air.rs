@@ -219,11 +219,8 @@ pub fn fly() -> Result<Vec<Flight>, String> {
                     .mix_with_health(&setpoint, conditions, Health::GOOD);
                 let (throttles, ..) = mixed.map_err(|error| format!("{name}: {error}"))?;
                 let units = compiled.airframe.units.iter();
-                let thrusts = units.map(|unit| {
-                    let of = |channel: usize| f64::from(throttles[channel]);
-                    let pair = [unit.upper_channel, unit.lower_channel].map(of);
-                    system.efforts(pair, system.volts, flight.sigma)[0]
-                });
+                let thrusts = units
+                    .map(|unit| system.efforts(unit.throttles(&throttles), system.volts, flight.sigma)[0]);
                 Ok(100.0 * (thrusts.sum::<f64>() / thrust_n - 1.0))
             };
             let units = compiled.airframe.units.len() as f64;

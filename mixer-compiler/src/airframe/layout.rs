@@ -70,8 +70,9 @@ pub(super) fn read(table: &mut Fields<'_, '_>, bench_spin: Option<Spin>) -> Layo
                 position_m: Some([x, y, 0.0]),
                 axis: Some(unit::UPWARD),
                 upper_spin: Some(spin),
-                channels: Some(channels),
+                channels: Some((channels[0], Some(channels[1]))),
                 pair,
+                rotor: None,
             }
         });
         Some(units.collect())

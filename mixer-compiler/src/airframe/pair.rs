@@ -138,8 +138,12 @@ pub(super) fn read(table: &mut Fields<'_, '_>, throttle: Option<&Throttle>) -> (
     let [thrust_n, torque_nm] = [&THRUST_N, &TORQUE_NM].map(|key| coefficients(table, key, basis));
     let upper_spin = table.word(&UPPER_SPIN, &Spin::ALL);
     let lower_is_stronger = table.word(&STRONGER, &[false, true]);
-    let lower_out = table.table(&LOWER_OUT, |table| rotor_alone::read(table, -1.0, throttle));
-    let upper_out = table.table(&UPPER_OUT, |table| rotor_alone::read(table, 1.0, throttle));
+    let lower_out = table.table(&LOWER_OUT, |table| {
+        rotor_alone::read(table, &rotor_alone::UPPER, throttle)
+    });
+    let upper_out = table.table(&UPPER_OUT, |table| {
+        rotor_alone::read(table, &rotor_alone::LOWER, throttle)
+    });
     let power = table.table(&POWER, |table| power::read(table, throttle));
     let uncertainty = table.table(&UNCERTAINTY, uncertainty::read);
     let borrowed_from = table.read::<String>(&BORROWED_FROM);

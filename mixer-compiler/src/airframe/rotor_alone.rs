@@ -5,7 +5,7 @@ use super::limits;
 use super::throttle::Throttle;
 use crate::diagnostic::{Code, number};
 use crate::spec::Fields;
-use crate::spec::keys::{ValueKind, keys};
+use crate::spec::keys::{Key, ValueKind, keys};
 
 keys! { LOWER_OUT = "[pair.lower_out]":
     UPPER_THRUST_N "thrust_n" = "[0.2, 14.1, -1.7]", ValueKind::Numbers([3, 3]),
@@ -40,13 +40,41 @@ impl RotorAlone {
     }
 }
 
-/// Reads a table of the rotor whose torque has this sign.
-pub(super) fn read(table: &mut Fields<'_, '_>, sign: f64, throttle: Option<&Throttle>) -> Option<RotorAlone> {
-    let (keys, turning, side) = if sign < 0.0 {
-        ([&UPPER_THRUST_N, &UPPER_TORQUE_NM], "upper", "below")
-    } else {
-        ([&LOWER_THRUST_N, &LOWER_TORQUE_NM], "lower", "above")
-    };
+/// Whose curves a table has.
+pub(super) struct Whose {
+    /// The keys of thrust and torque.
+    pub(super) keys: [&'static Key; 2],
+    /// The rotor in words.
+    pub(super) what: &'static str,
+    /// The sign of its torque.
+    pub(super) sign: f64,
+    /// What to do about a torque of the other sign.
+    pub(super) torque_help: &'static str,
+}
+
+/// Of `[pair.lower_out]`.
+pub(super) const UPPER: Whose = Whose {
+    keys: [&UPPER_THRUST_N, &UPPER_TORQUE_NM],
+    what: "the upper rotor alone",
+    sign: -1.0,
+    torque_help: "torque is positive where the lower rotor outweighs the upper; in `[pair.lower_out]` the upper rotor turns",
+};
+
+/// Of `[pair.upper_out]`.
+pub(super) const LOWER: Whose = Whose {
+    keys: [&LOWER_THRUST_N, &LOWER_TORQUE_NM],
+    what: "the lower rotor alone",
+    sign: 1.0,
+    torque_help: "torque is positive where the lower rotor outweighs the upper; in `[pair.upper_out]` the lower rotor turns",
+};
+
+/// Reads a table.
+pub(super) fn read(
+    table: &mut Fields<'_, '_>,
+    whose: &Whose,
+    throttle: Option<&Throttle>,
+) -> Option<RotorAlone> {
+    let Whose { keys, what, sign, .. } = whose;
     let terms = "a1, a2, a3 of a1 x + a2 x^2 + a3 x^3 in the throttle x of the rotor";
     let [thrust, torque] = keys.map(|key| {
         let found = limits::coefficients(table, key, ("a rotor alone", 3), |_| terms.to_owned())?;
@@ -68,21 +96,25 @@ pub(super) fn read(table: &mut Fields<'_, '_>, sign: f64, throttle: Option<&Thro
     }
     let full = value(torque_nm, throttle.max);
     if sign * full <= 0.0 {
+        let side = if *sign < 0.0 { "below" } else { "above" };
         let message = format!(
-            "the torque of `{torque_path}` is {full:.4} N m at full throttle, that of the {turning} rotor alone is {side} 0"
-        );
-        let help = format!(
-            "torque is positive where the lower rotor outweighs the upper; in `[{}]` the {turning} rotor turns",
-            table.path()
+            "the torque of `{torque_path}` is {full:.4} N m at full throttle, that of {what} is {side} 0"
         );
         let label = "torque of the other rotor, or of the other sign";
-        table.refuse::<()>(keys[1], Code::RotorAlone, message, label, help);
+        table.refuse::<()>(keys[1], Code::RotorAlone, message, label, whose.torque_help);
     }
     (table.faults.len() == before).then_some(RotorAlone { thrust_n, torque_nm })
 }
 
 fn value([a1, a2, a3]: [f64; 3], x: f64) -> f64 {
     ((a3 * x + a2) * x + a1) * x
+}
+
+impl RotorAlone {
+    /// The slopes of thrust and torque over the throttle, N and N m.
+    pub(crate) fn slopes(&self, x: f64) -> [f64; 2] {
+        [self.thrust_n, self.torque_nm].map(|[a1, a2, a3]| (3.0 * a3 * x + 2.0 * a2) * x + a1)
+    }
 }
 
 /// The least slope over the throttle range, N, and the throttle where it is: the slope is a

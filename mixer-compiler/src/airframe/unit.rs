@@ -9,11 +9,13 @@ keys! { TABLE = "[[unit]]":
     POSITION_M "position_m" = "[0.3182, 0.3182, 0.0]", ValueKind::Numbers([3, 3]),
         "Forward, right and down from the centre of gravity, m.".required();
     UPPER_SPIN "upper_spin" = "\"cw\"", ValueKind::Word(&Spin::WORDS),
-        "How this unit's upper rotor turns, seen from above.".required();
+        "How this unit's upper rotor, or its single rotor, turns, seen from above.".required();
     CHANNELS "channels" = "[0, 4]", ValueKind::Channels,
-        "Outputs of the upper and of the lower rotor; all units together have 0 to 2n - 1.".required();
+        "Outputs of the upper and of the lower rotor, of a single rotor its one; all units together have 0 to the number of rotors less 1.".required();
     PAIR "pair" = "\"front\"", ValueKind::Text,
         "Name of its `[[pair]]`, where there are several.";
+    ROTOR "rotor" = "\"tail\"", ValueKind::Text,
+        "Name of its `[[rotor]]`, where the unit is a single rotor and no pair.";
     AXIS "axis" = "[0.0, 0.0, -1.0]", ValueKind::Numbers([3, 3]),
         "Unit vector of the thrust, straight up without it.";
 }
@@ -45,13 +47,66 @@ pub struct Unit {
     pub upper_spin: Spin,
     /// Output that drives the upper rotor.
     pub upper_channel: usize,
-    /// Output that drives the lower rotor.
-    pub lower_channel: usize,
-    /// Where its pair stands in [`super::Airframe::pairs`].
+    /// Output that drives the lower rotor; `None` of a single rotor.
+    pub lower_channel: Option<usize>,
+    /// Where its pair stands in [`super::Airframe::pairs`]; single rotors count on past the pairs.
     pub pair: usize,
 }
 
+/// A rotor of a unit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Rotor {
+    /// The output that drives it.
+    pub channel: usize,
+    /// How it turns, seen from above.
+    pub spin: Spin,
+    /// `upper`, `lower` or `single`.
+    pub layer: &'static str,
+}
+
 impl Unit {
+    /// Its rotors, the upper one first.
+    pub fn rotors(&self) -> impl Iterator<Item = Rotor> + use<> {
+        let layer = if self.lower_channel.is_some() {
+            "upper"
+        } else {
+            "single"
+        };
+        let spin = self.upper_spin;
+        let upper = Rotor {
+            channel: self.upper_channel,
+            spin,
+            layer,
+        };
+        let lower = self.lower_channel.map(|channel| Rotor {
+            channel,
+            spin: spin.reversed(),
+            layer: "lower",
+        });
+        std::iter::once(upper).chain(lower)
+    }
+
+    /// The outputs of its rotors, the upper one first.
+    pub fn channels(&self) -> impl Iterator<Item = usize> + use<> {
+        self.rotors().map(|rotor| rotor.channel)
+    }
+
+    /// The outputs of both rotors as `mixer-rt` has them.
+    pub(crate) fn channel_table(&self) -> [u8; 2] {
+        [Some(self.upper_channel), self.lower_channel]
+            .map(|channel| channel.map_or(mixer_rt::tables::NO_CHANNEL, |channel| channel as u8))
+    }
+
+    /// The throttles `[u, l]` of its rotors in a list with one per output; 0 of a rotor that does not exist, or that the
+    /// list does not have.
+    pub fn throttles<T: Copy + Into<f64>>(&self, outputs: &[T]) -> [f64; 2] {
+        [Some(self.upper_channel), self.lower_channel].map(|channel| {
+            let throttle = channel.and_then(|channel| outputs.get(channel));
+            throttle.map_or(0.0, |throttle| (*throttle).into())
+        })
+    }
+
     /// Sign s of the unit's torque in yaw: +1 where its upper rotor spins as on the bench, else -1.
     pub(super) fn spin_sign(&self, pair_upper_spin: Spin) -> f64 {
         if self.upper_spin == pair_upper_spin {
@@ -67,20 +122,43 @@ pub(super) struct Written {
     pub(super) position_m: Option<[f64; 3]>,
     pub(super) axis: Option<[f64; 3]>,
     pub(super) upper_spin: Option<Spin>,
-    /// Outputs of the upper and of the lower rotor.
-    pub(super) channels: Option<[usize; 2]>,
+    /// Outputs of the upper and of the lower rotor; none of the lower one of a single rotor.
+    pub(super) channels: Option<(usize, Option<usize>)>,
     /// The name of its pair.
     pub(super) pair: Option<String>,
+    /// The name of its single rotor.
+    pub(super) rotor: Option<String>,
 }
 
 pub(super) fn read(table: &mut Fields<'_, '_>) -> Written {
+    let rotor = table.read::<String>(&ROTOR).map(Spanned::into_inner);
     Written {
         position_m: position(table),
         upper_spin: table.word(&UPPER_SPIN, &Spin::ALL),
-        channels: table.array(&CHANNELS),
+        channels: match rotor {
+            Some(_) => single_channel(table).map(|channel| (channel, None)),
+            None => table.array(&CHANNELS).map(|[upper, lower]| (upper, Some(lower))),
+        },
+        rotor,
         pair: table.read::<String>(&PAIR).map(Spanned::into_inner),
         axis: axis(table),
     }
+}
+
+/// The output of a single rotor.
+fn single_channel(table: &mut Fields<'_, '_>) -> Option<usize> {
+    let list = table.read::<Vec<Spanned<usize>>>(&CHANNELS)?.into_inner();
+    if let [channel] = list.as_slice() {
+        return Some(*channel.get_ref());
+    }
+    let message = format!(
+        "`{}.channels` has {} outputs, and its single rotor one",
+        table.path(),
+        list.len()
+    );
+    let help =
+        "write it like `channels = [3]`; two rotors on one mast are a pair, with `pair` in place of `rotor`";
+    table.refuse(&CHANNELS, Code::WrongLength, message, "expected one output", help)
 }
 
 fn position(table: &mut Fields<'_, '_>) -> Option<[f64; 3]> {
@@ -133,10 +211,11 @@ fn axis(table: &mut Fields<'_, '_>) -> Option<[f64; 3]> {
     table.refuse(&AXIS, Code::AxisNotUpward, message, label, help)
 }
 
-/// Checks the units together, and gives them where all are complete; `pairs` are the names of the file's.
+/// Checks the units together, and gives them where all are complete; `names` are those of the file's pairs and of its
+/// single rotors.
 pub(super) fn check(
     units: &[Written],
-    pairs: &[String],
+    names: [&[String]; 2],
     places: &Places,
     faults: &mut Vec<Diagnostic>,
 ) -> Option<Vec<Unit>> {
@@ -149,9 +228,9 @@ pub(super) fn check(
     }
     check_places(units, places, faults);
     check_channels(units, places, faults);
-    let pairs = check_pairs(units, pairs, places, faults);
+    let pairs = check_pairs(units, names, places, faults);
     let complete = |(unit, pair): (&Written, Option<usize>)| {
-        let [upper_channel, lower_channel] = unit.channels?;
+        let (upper_channel, lower_channel) = unit.channels?;
         Some(Unit {
             position_m: unit.position_m?,
             axis: unit.axis?,
@@ -164,108 +243,148 @@ pub(super) fn check(
     units.iter().zip(pairs).map(complete).collect()
 }
 
-/// Every unit has one of the file's pairs, by name where there are several, and every pair a unit.
+/// Every unit has one of the file's pairs or single rotors, by name where there are several, and each of these a unit.
 fn check_pairs(
     units: &[Written],
-    names: &[String],
+    [pairs, rotors]: [&[String]; 2],
     places: &Places,
     faults: &mut Vec<Diagnostic>,
 ) -> Vec<Option<usize>> {
+    // Rotors at fault are told of.
+    let rotors_are_whole = !faults.iter().any(|fault| fault.key.starts_with("rotor"));
     let mut fault = |code, key: String, message: String, label: &str, help: String| {
         let fault = Diagnostic::new(code, key.as_str(), place_in(places, &key), message);
         faults.push(fault.label(label).help(help));
     };
-    let listed: Vec<String> = names.iter().map(|name| format!("\"{name}\"")).collect();
-    let (listed, is_one) = (listed.join(", "), names.len() == 1);
+    let listed = |names: &[String]| -> String {
+        let quoted: Vec<String> = names.iter().map(|name| format!("\"{name}\"")).collect();
+        quoted.join(", ")
+    };
+    // One pair alone needs no name.
+    let is_one = pairs.len() == 1;
     let is_clear =
-        (0..names.len()).all(|k| is_one || !names[k].is_empty() && !names[..k].contains(&names[k]));
-    for (k, name) in names.iter().enumerate().filter(|_| !is_one) {
-        let same = names.iter().position(|other| other == name);
-        if name.is_empty() {
-            let (message, help) = (
-                format!("`pair[{k}]` has no name"),
-                "add name = \"..\", by which units have it",
-            );
-            fault(
-                Code::MissingKey,
-                format!("pair[{k}]"),
-                message,
-                "one of several",
-                help.to_owned(),
-            );
-        } else if same != Some(k) {
-            let message = format!("two `[[pair]]` are called \"{name}\"");
-            fault(
-                Code::Conflict,
-                format!("pair[{k}].name"),
-                message,
-                "the second one",
-                "rename one of them".to_owned(),
-            );
-        } else if is_clear
-            && units.iter().all(|unit| unit.pair.is_some())
-            && !units.iter().any(|unit| unit.pair.as_ref() == Some(name))
-        {
-            let message = format!("no unit has the pair \"{name}\"");
-            let help =
-                format!("write pair = \"{name}\" in a `[[unit]]` or in `pairs` of `[layout]`, or remove it");
-            fault(
-                Code::Conflict,
-                format!("pair[{k}].name"),
-                message,
-                "not used",
-                help,
-            );
+        (0..pairs.len()).all(|k| is_one || !pairs[k].is_empty() && !pairs[..k].contains(&pairs[k]));
+    let is_named = |unit: &Written| unit.pair.is_some() || unit.rotor.is_some();
+    let is_complete = is_clear && units.iter().all(|unit| is_one || is_named(unit));
+    for (table, names) in [("pair", pairs), ("rotor", rotors)] {
+        let is_lone = is_one && table == "pair";
+        let has = |unit: &Written, name: &String| match table {
+            "pair" => unit.rotor.is_none() && (is_one || unit.pair.as_ref() == Some(name)),
+            _ => unit.rotor.as_ref() == Some(name),
+        };
+        for (k, name) in names.iter().enumerate() {
+            let named = format!("{table}[{k}].name");
+            if name.is_empty() && !is_lone {
+                let message = format!("`{table}[{k}]` has no name");
+                let help = "add name = \"..\", by which units have it".to_owned();
+                fault(
+                    Code::MissingKey,
+                    format!("{table}[{k}]"),
+                    message,
+                    "one of several",
+                    help,
+                );
+            } else if names[..k].contains(name) {
+                let message = format!("two `[[{table}]]` are called \"{name}\"");
+                fault(
+                    Code::Conflict,
+                    named,
+                    message,
+                    "the second one",
+                    "rename one of them".to_owned(),
+                );
+            } else if is_complete && !units.is_empty() && !units.iter().any(|unit| has(unit, name)) {
+                let (message, help) = match is_lone {
+                    true => (
+                        "no unit has the pair".to_owned(),
+                        "this compiler is for frames with a coaxial pair: one unit at least has no `rotor`"
+                            .to_owned(),
+                    ),
+                    false => {
+                        let of_layout = if table == "pair" {
+                            " or in `pairs` of `[layout]`"
+                        } else {
+                            ""
+                        };
+                        (
+                            format!("no unit has the {table} \"{name}\""),
+                            format!("write {table} = \"{name}\" in a `[[unit]]`{of_layout}, or remove it"),
+                        )
+                    }
+                };
+                fault(Code::Conflict, named, message, "not used", help);
+            }
         }
     }
-    let is_silent = units.iter().all(|unit| unit.pair.is_none());
-    if places.contains_key("layout") && is_silent && names.len() > 1 && is_clear {
+    let is_silent = !units.iter().any(is_named);
+    if places.contains_key("layout") && is_silent && pairs.len() > 1 && is_clear {
         let message = "`layout` does not say which unit has which pair".to_owned();
-        let help = format!("add pairs = [..] with one of {listed} for each unit, clockwise from the first");
+        let help = format!(
+            "add pairs = [..] with one of {} for each unit, clockwise from the first",
+            listed(pairs)
+        );
         fault(Code::MissingKey, "layout".to_owned(), message, "no `pairs`", help);
         return vec![None; units.len()];
     }
     let find = |(k, unit): (usize, &Written)| {
-        let found = match &unit.pair {
+        let found = match (&unit.pair, &unit.rotor) {
+            (Some(_), Some(_)) => None,
+            (None, Some(_)) if !rotors_are_whole => return None,
+            (None, Some(name)) => rotors
+                .iter()
+                .position(|known| known == name)
+                .map(|place| pairs.len() + place),
             // Pairs at fault are told of.
-            _ if names.is_empty() || !is_clear => return None,
-            None => is_one.then_some(0),
-            Some(name) => names.iter().position(|known| known == name && !name.is_empty()),
+            _ if pairs.is_empty() || !is_clear => return None,
+            (None, None) => is_one.then_some(0),
+            (Some(name), None) => pairs.iter().position(|known| known == name && !name.is_empty()),
         };
-        if found.is_none() {
-            let key = match places.contains_key("layout.pairs") {
-                true => format!("layout.pairs[{k}]"),
-                false => format!("unit[{k}].pair"),
-            };
-            let (code, message, label, help) = match &unit.pair {
-                None => {
-                    let message = format!("`unit[{k}]` has no pair, and the file has several");
-                    (
-                        Code::MissingKey,
-                        message,
-                        "which one?",
-                        format!("write pair = one of {listed}"),
-                    )
-                }
-                Some(name) if is_one && names[0].is_empty() => {
-                    let message =
-                        format!("`unit[{k}]` has the pair \"{name}\", and the file's pair has no name");
-                    let help = format!("remove it, or write name = \"{name}\" under `[pair]`");
-                    (Code::UnknownWord, message, "no such pair", help)
-                }
-                Some(name) => {
-                    let message = format!("`unit[{k}]` has the pair \"{name}\", of which the file has none");
-                    (
-                        Code::UnknownWord,
-                        message,
-                        "no such pair",
-                        format!("write one of {listed}"),
-                    )
-                }
-            };
-            fault(code, key, message, label, help);
+        if found.is_some() {
+            return found;
         }
-        found
+        let in_layout = places.contains_key("layout.pairs");
+        let table = if unit.rotor.is_some() { "rotor" } else { "pair" };
+        let key = match in_layout {
+            true => format!("layout.pairs[{k}]"),
+            false => format!("unit[{k}].{table}"),
+        };
+        let (code, message, label, help) = match (&unit.pair, &unit.rotor) {
+            (Some(_), Some(_)) => (
+                Code::Conflict,
+                format!("`unit[{k}]` has a pair and a single rotor"),
+                "one of them",
+                "remove `pair` or `rotor`".to_owned(),
+            ),
+            (None, None) => (
+                Code::MissingKey,
+                format!("`unit[{k}]` has no pair, and the file has several"),
+                "which one?",
+                format!("write pair = one of {}", listed(pairs)),
+            ),
+            (Some(name), None) if is_one && pairs[0].is_empty() => (
+                Code::UnknownWord,
+                format!("`unit[{k}]` has the pair \"{name}\", and the file's pair has no name"),
+                "no such pair",
+                format!("remove it, or write name = \"{name}\" under `[pair]`"),
+            ),
+            (Some(name), None) => (
+                Code::UnknownWord,
+                format!("`unit[{k}]` has the pair \"{name}\", of which the file has none"),
+                "no such pair",
+                format!("write one of {}", listed(pairs)),
+            ),
+            (None, Some(name)) => (
+                Code::UnknownWord,
+                format!("`unit[{k}]` has the rotor \"{name}\", of which the file has none"),
+                "no such rotor",
+                match rotors {
+                    [] => format!("add a table `[[rotor]]` with name = \"{name}\""),
+                    _ => format!("write one of {}", listed(rotors)),
+                },
+            ),
+        };
+        fault(code, key, message, label, help);
+        None
     };
     units.iter().enumerate().map(find).collect()
 }
@@ -296,19 +415,24 @@ fn check_places(units: &[Written], places: &Places, faults: &mut Vec<Diagnostic>
     }
 }
 
-/// Every output from 0 to 2n - 1 drives exactly one rotor.
+/// Every output from 0 on drives exactly one rotor.
 fn check_channels(units: &[Written], places: &Places, faults: &mut Vec<Diagnostic>) {
-    let rotors = 2 * units.len();
+    let rotors = units
+        .iter()
+        .map(|unit| if unit.rotor.is_some() { 1 } else { 2 })
+        .sum::<usize>();
     let last = rotors.saturating_sub(1);
     // Who drives each output.
     let mut driven: Vec<Option<String>> = vec![None; rotors];
     let mut bad = Vec::new();
     for (k, channels) in units.iter().enumerate() {
-        let rotors = ["upper", "lower"]
-            .into_iter()
-            .zip(channels.channels.into_iter().flatten());
-        for (index, (rotor, output)) in rotors.enumerate() {
-            let here = format!("the {rotor} rotor of `unit[{k}]`");
+        let Some((upper, lower)) = channels.channels else {
+            continue;
+        };
+        let rotors = [Some(("upper ", upper)), lower.map(|lower| ("lower ", lower))];
+        for (index, (rotor, output)) in rotors.into_iter().flatten().enumerate() {
+            let rotor = if lower.is_none() { "" } else { rotor };
+            let here = format!("the {rotor}rotor of `unit[{k}]`");
             let (code, message, label) = match driven.get_mut(output) {
                 Some(slot @ None) => {
                     *slot = Some(here);
@@ -338,7 +462,7 @@ fn check_channels(units: &[Written], places: &Places, faults: &mut Vec<Diagnosti
             let first = first.join(", ");
             format!("outputs count from 0; outputs {first} and {last} drive no rotor yet")
         }
-        _ => "outputs count from 0, two for each unit, without a gap".to_string(),
+        _ => "outputs count from 0, two for each pair, without a gap".to_string(),
     };
     faults.extend(bad.into_iter().map(|fault| fault.help(help.as_str())));
 }

@@ -175,7 +175,7 @@ fn units(
             null: null as f32,
             per_null: if null == 0.0 { 0.0 } else { (1.0 / null) as f32 },
             ends: if null < 0.0 { [most, least] } else { [least, most] },
-            channels: [unit.upper_channel as u8, unit.lower_channel as u8],
+            channels: unit.channel_table(),
         })
         .collect()
 }

@@ -10,6 +10,10 @@
 //! all axes are vertical, thrusts give no yaw and torques nothing else, so this is plain M+. Where
 //! axes are tilted, plain M+ weighs a newton as a newton metre and asks for torques that no pair has.
 //!
+//! A single rotor is one effort, not two. With kappa the ratio of its torque and thrust at half of its largest thrust its
+//! column is M_f + kappa M_Q, and its rows of M+ are p and kappa p: what its torque differs from kappa f by, the mixer
+//! feeds back (`feedback.rs`).
+//!
 //! An airframe may leave axes out: their rows are dropped before inversion and their columns of M+
 //! are zero.
 
@@ -17,6 +21,7 @@ use nalgebra::{DMatrix, Matrix4xX, MatrixXx4};
 
 use super::pair_map::scales;
 use super::pseudo_inverse::PseudoInverse;
+use crate::airframe::single_rotor::torque_per_thrust;
 use crate::airframe::{Airframe, Axis};
 use crate::diagnostic::{Code, Diagnostic};
 
@@ -51,8 +56,14 @@ impl Effectiveness {
     pub fn new(airframe: &Airframe) -> Result<Self, Vec<Diagnostic>> {
         let matrix = matrix(airframe);
         let (n, served) = (airframe.units.len(), served(airframe));
+        let kappas = kappas(airframe);
         let rows = DMatrix::from_fn(served.len(), 2 * n, |row, column| {
-            matrix[(served[row] as usize, column)]
+            let entry = |column: usize| matrix[(served[row] as usize, column)];
+            match kappas[column % n] {
+                None => entry(column),
+                Some(kappa) if column < n => entry(column) + kappa * entry(n + column),
+                Some(_) => 0.0,
+            }
         });
         let scales = scales(airframe, [1.0; 2]);
         // A map without thrust or torque is refused elsewhere.
@@ -71,6 +82,12 @@ impl Effectiveness {
         let mut pseudo_inverse = MatrixXx4::zeros(2 * n);
         for (column, axis) in inverse.matrix.column_iter().zip(&served) {
             pseudo_inverse.set_column(*axis as usize, &column);
+        }
+        for (i, kappa) in kappas.iter().enumerate() {
+            if let Some(kappa) = kappa {
+                let by_thrust = pseudo_inverse.row(i) * *kappa;
+                pseudo_inverse.set_row(n + i, &by_thrust);
+            }
         }
         Ok(Effectiveness {
             matrix,
@@ -101,6 +118,14 @@ impl Effectiveness {
                 && matrix[(3, n + i)] == 0.0
         })
     }
+}
+
+/// Torque over thrust of the units that are single rotors, m, at half of the largest thrust.
+fn kappas(airframe: &Airframe) -> Vec<Option<f64>> {
+    let units = airframe.units.iter();
+    let curves = units.map(|unit| airframe.curve_of(unit));
+    let kappa = |curve| torque_per_thrust(curve, &airframe.throttle);
+    curves.map(|curve| curve.map(kappa)).collect()
 }
 
 /// M of the layout.

@@ -25,7 +25,7 @@ struct Slopes {
 /// The largest thrust (N) and torque (N m) of each unit at `[k_f, k_Q]`.
 pub fn scales(airframe: &Airframe, factors: [f64; 2]) -> Vec<[f64; 2]> {
     let scale = |pair| PairMap::new(pair, &airframe.throttle).scale();
-    let scales: Vec<[f64; 2]> = airframe.pairs().map(scale).collect();
+    let scales: Vec<[f64; 2]> = airframe.kinds().map(scale).collect();
     let units = airframe.units.iter();
     units
         .map(|unit| [0, 1].map(|k| factors[k] * scales[unit.pair][k]))

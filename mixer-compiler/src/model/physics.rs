@@ -41,12 +41,14 @@ impl Physics<'_> {
     /// `[f, Q]` (N, N m) of a unit at the reference voltage. A rotor that is out gives nothing; its partner gives what the file says
     /// of a rotor alone, else the pair's polynomial at throttle 0 of the other.
     pub fn efforts<T: Copy + Into<f64>>(&self, unit: &Unit, throttle: &[T], health: Health) -> [f64; 2] {
-        let channels = [unit.upper_channel, unit.lower_channel];
-        let [u, l] = channels.map(|channel| throttle[channel].into());
+        let [u, l] = unit.throttles(throttle);
+        let is_out = |channel: usize| health.has_failed(channel as u8);
+        // A single rotor is a pair whose lower rotor is out.
+        let out = [is_out(unit.upper_channel), unit.lower_channel.is_none_or(is_out)];
         let pair = self.airframe.pair_of(unit);
         let own = (unit.pair != 0).then(|| PairMap::new(pair, &self.airframe.throttle));
         let map = own.as_ref().unwrap_or(self.map);
-        match channels.map(|channel| health.has_failed(channel as u8)) {
+        match out {
             [false, false] => map.efforts([u, l]),
             [true, true] => [0.0; 2],
             [false, true] => match &pair.lower_out {

@@ -2,7 +2,7 @@
 
 use super::rule::{Facts, Rule};
 use super::symmetry;
-use crate::airframe::Axis;
+use crate::airframe::{Axis, Unit};
 use crate::diagnostic::{Code, number, rounded};
 use crate::model::scales;
 
@@ -175,24 +175,33 @@ pub(super) fn centre_of_gravity(facts: &Facts<'_>) -> Vec<Rule> {
 pub(super) fn outputs(facts: &Facts<'_>) -> Vec<Rule> {
     let units = &facts.airframe.units;
     let count = units.len();
-    let is_reversed = |unit: usize| units[unit].upper_channel > units[unit].lower_channel;
+    let is_reversed = |unit: usize| {
+        let Unit {
+            upper_channel,
+            lower_channel,
+            ..
+        } = &units[unit];
+        lower_channel.is_some_and(|lower| *upper_channel > lower)
+    };
     let reversed = (0..count).filter(|unit| is_reversed(*unit)).count();
     let odd = match reversed {
+        // A single rotor has no order.
+        _ if units.iter().any(|unit| unit.lower_channel.is_none()) => None,
         1 if count > 2 => (0..count).find(|unit| is_reversed(*unit)),
         _ if count > 2 && reversed + 1 == count => (0..count).find(|unit| !is_reversed(*unit)),
         _ => None,
     };
-    let exchanged = odd.map(|odd| {
-        let (upper, lower) = (units[odd].upper_channel, units[odd].lower_channel);
+    let exchanged = odd.and_then(|odd| {
+        let (upper, lower) = (units[odd].upper_channel, units[odd].lower_channel?);
         let key = facts.place("layout.channels", format!("unit[{odd}].channels"));
-        Rule::holds(Code::RotorsExchanged, key, false).says(
+        Some(Rule::holds(Code::RotorsExchanged, key, false).says(
             format!(
                 "the upper rotor of `unit[{odd}]` has output {upper} and the lower one {lower}, in the reverse of the order \
                  of all other units"
             ),
             "upper rotor first",
             format!("if they are exchanged, write [{lower}, {upper}]"),
-        )
+        ))
     });
     let most = MOST_COUNTED_UNITS;
     let key = facts.place("layout.units", format!("unit[{most}]"));

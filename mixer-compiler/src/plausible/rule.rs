@@ -84,7 +84,7 @@ pub(super) struct Facts<'a> {
     pub(super) upper: [f64; 2],
     pub(super) lower: [f64; 2],
     pub(super) full: [f64; 2],
-    /// Efforts along the border of the attainable set of each pair.
+    /// Efforts along the border of the attainable set of each pair, and along the curve of each single rotor.
     pub(super) borders: Vec<Vec<[f64; 2]>>,
     /// Least and largest bare thrust at the reference voltage, N; `None` where the airframe is
     /// refused.
@@ -108,7 +108,7 @@ impl<'a> Facts<'a> {
             upper: map.efforts([high, low]),
             lower: map.efforts([low, high]),
             full: map.efforts([high, high]),
-            borders: airframe.pairs().map(border).collect(),
+            borders: airframe.kinds().map(border).collect(),
             thrust_range_n: compiled.map(|(_, range)| range),
             map,
         }

@@ -158,7 +158,7 @@ impl ValueKind {
             ValueKind::Count(range) => format!("whole number, {}", count(range)),
             ValueKind::Numbers(range) => format!("{} numbers", count(range)),
             ValueKind::Points => "list of `[V, factor]`".to_owned(),
-            ValueKind::Channels => "`[upper, lower]`".to_owned(),
+            ValueKind::Channels => "`[upper, lower]`, or `[single]`".to_owned(),
             ValueKind::ListOfChannels => "list of `[upper, lower]`".to_owned(),
             ValueKind::Table(_) => "table".to_owned(),
             ValueKind::Tables(_) => "tables".to_owned(),

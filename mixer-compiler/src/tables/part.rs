@@ -3,7 +3,7 @@
 
 use mixer_rt::tables::{
     Airmode, Border, Cell, ClosedForm, ClosedFormUnit, Facets, Grid, Kind, Knot, Law, LawPiece, Outline,
-    Pair, Priorities, SingleRotor, Steep, ThrottleRange, Tolerance, Unit, Unlike,
+    Pair, Priorities, SingleRotor, Steep, ThrottleRange, Tolerance, Unit, Unlike, WithSingleRotors,
 };
 use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::{ToTokens, quote};
@@ -106,6 +106,7 @@ parts! {
     SingleRotor { thrust, torque };
     Kind<QuantityTable, InverseTable> { pair, singles, inverse, mean_square_slopes };
     Unlike<'_, QuantityTable, InverseTable> { kinds, of };
+    WithSingleRotors<'_, QuantityTable, InverseTable> { unlike, rotors };
     ThrottleRange { min, max };
     Law<'_> { reference, range, pieces };
     LawPiece { start, thrust, torque };

@@ -37,7 +37,7 @@ use core::hint::black_box;
 
 use crate::Wrench;
 use crate::allocate::priorities::Airmode;
-use crate::pair::{Inverse, PolynomialInverse, Unlike};
+use crate::pair::{Inverse, PolynomialInverse, SingleRotor, Unlike, WithSingleRotors};
 
 /// The largest number of units.
 const MOST_CLOSED_FORM_UNITS: usize = 4;
@@ -115,6 +115,9 @@ pub trait AllocationMethod<P> {
     /// The inverse map of unlike pairs.
     type Inverse: Inverse;
 
+    /// Whether the frame may have single rotors: images of other frames leave out what serves them.
+    const MAY_HAVE_SINGLE_ROTORS: bool = false;
+
     /// The closed form, where there is one.
     #[inline(always)]
     fn closed_form(&self) -> Option<&ClosedForm<'_>> {
@@ -125,6 +128,12 @@ pub trait AllocationMethod<P> {
     #[inline(always)]
     fn unlike(&self) -> Option<&Unlike<'_, P, Self::Inverse>> {
         None
+    }
+
+    /// The kinds of single rotors.
+    #[inline(always)]
+    fn single_rotors(&self) -> &[[SingleRotor; 2]] {
+        &[]
     }
 }
 
@@ -146,6 +155,23 @@ impl<P, I: Inverse> AllocationMethod<P> for Unlike<'_, P, I> {
     #[inline(always)]
     fn unlike(&self) -> Option<&Unlike<'_, P, I>> {
         Some(self)
+    }
+}
+
+/// Nor have units with single rotors among them.
+impl<P, I: Inverse> AllocationMethod<P> for WithSingleRotors<'_, P, I> {
+    type Inverse = I;
+
+    const MAY_HAVE_SINGLE_ROTORS: bool = true;
+
+    #[inline(always)]
+    fn unlike(&self) -> Option<&Unlike<'_, P, I>> {
+        Some(&self.unlike)
+    }
+
+    #[inline(always)]
+    fn single_rotors(&self) -> &[[SingleRotor; 2]] {
+        self.rotors
     }
 }
 

@@ -16,6 +16,7 @@ use super::closed_form::AllocationMethod;
 use super::frame::Frame;
 use super::system::{Factors, Products};
 use super::unit::UnitState;
+use crate::pair::single::LEAST_RISE;
 use crate::pair::{Inverse, Quantity};
 use crate::{divided, larger, rolled, sqrt};
 
@@ -25,9 +26,6 @@ const TANGENTS: u32 = 3;
 
 /// Multipliers beyond this are of rows that the frame does not serve.
 const UNSERVED: f32 = 100.0;
-
-/// Least thrust per throttle that is divided by, N.
-const LEAST_RISE: f32 = 1e-6;
 
 /// Least square of the root that extends a tangent to a parabola: a step back to a fifth of the slope.
 const LEAST_SQUARE: f32 = 0.04;

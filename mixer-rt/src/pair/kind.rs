@@ -1,4 +1,4 @@
-//! Pairs that differ on one frame.
+//! Units that differ on one frame: pairs of several kinds, and single rotors.
 
 use super::forward::Pair;
 use super::single::SingleRotor;
@@ -23,4 +23,13 @@ pub struct Unlike<'a, P, I> {
     pub kinds: &'a [Kind<P, I>],
     /// The kind of each unit, by index.
     pub of: &'a [u8],
+}
+
+/// [`Unlike`] on a frame with single rotors, which are units of one effort: their torque follows from their thrust.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WithSingleRotors<'a, P, I> {
+    /// The kinds of pairs. `of` counts on past them for single rotors.
+    pub unlike: Unlike<'a, P, I>,
+    /// Thrust and torque of each kind of single rotor, twice: a unit has a row for its upper and for its lower rotor.
+    pub rotors: &'a [[SingleRotor; 2]],
 }

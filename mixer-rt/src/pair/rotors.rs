@@ -17,6 +17,12 @@ impl Rotors {
         Rotors(channels.map(|channel| !health.has_failed(channel)))
     }
 
+    /// The upper one alone, if that.
+    #[inline(always)]
+    pub(crate) fn without_lower(self) -> Self {
+        Rotors([self.0[0], false])
+    }
+
     /// Whether one of them turns: 0 the upper, 1 the lower.
     #[inline(always)]
     pub(crate) fn turns(self, side: usize) -> bool {

@@ -1,4 +1,13 @@
-//! The curve that a single rotor leaves its unit.
+//! The curve of a rotor alone: of a single rotor, or of one whose partner is out.
+
+use super::inverse::ThrottleRange;
+use crate::{clamp, divided, divisor, larger, rolled, sqrt};
+
+/// Least thrust per throttle that is divided by, N.
+pub(crate) const LEAST_RISE: f32 = 1e-6;
+
+/// Newton steps to the throttle of a thrust.
+const STEPS: u32 = 4;
 
 /// A rotor alone, the other one of its unit at rest: its thrust (N) and torque (N m, signed as on
 /// the bench) as polynomials of its throttle without a constant, coefficients from the fourth
@@ -31,5 +40,32 @@ impl SingleRotor {
             [outer * x, outer_slope * x + outer, half * x + outer_slope]
         });
         [[f[0], q[0]], [f[1], q[1]], [f[2], q[2]]]
+    }
+
+    /// The throttle that has a thrust (N) where the thrust is in proportion to its square: where Newton's method begins.
+    #[inline(always)]
+    pub(crate) fn start(&self, range: &ThrottleRange, thrust: f32) -> f32 {
+        let [most, _] = self.efforts(range.max);
+        let share = clamp(divided(thrust, divisor(most)), 0.0, 1.0);
+        range.clamp(range.max * sqrt(share))
+    }
+
+    /// A Newton step from a throttle towards a thrust (N), within the range, and the torque (N m) of that thrust along the
+    /// tangent, also beyond the range.
+    #[inline(always)]
+    pub(crate) fn step(&self, range: &ThrottleRange, throttle: f32, thrust: f32) -> [f32; 2] {
+        let [[f, q], [by_f, by_q], _] = self.expansion(throttle);
+        let step = divided(thrust - f, larger(by_f, LEAST_RISE));
+        [range.clamp(throttle + step), q + by_q * step]
+    }
+
+    /// The throttle of a thrust (N), or the nearest one of the range.
+    #[inline(never)]
+    pub fn throttle(&self, range: &ThrottleRange, thrust: f32) -> f32 {
+        let mut throttle = self.start(range, thrust);
+        for _ in rolled(0..STEPS) {
+            [throttle, _] = self.step(range, throttle, thrust);
+        }
+        throttle
     }
 }

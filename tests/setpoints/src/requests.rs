@@ -38,10 +38,10 @@ impl<'a, P: Quantity, I: Inverse, S: AllocationMethod<P>> Requests<'a, P, I, S> 
         let ThrottleRange { min, max } = tables.throttle;
         let mut authority = [0.0; 4];
         for (index, unit) in tables.units.iter().enumerate() {
-            let pair = tables.pair_of(index);
-            let [f, _] = pair.efforts([max, max]);
-            let [_, low] = pair.efforts([max, min]);
-            let [_, high] = pair.efforts([min, max]);
+            let efforts = |throttles| tables.efforts_of(index, throttles);
+            let [f, _] = efforts([max, max]);
+            let [_, low] = efforts([max, min]);
+            let [_, high] = efforts([min, max]);
             let q = if high > -low { high } else { -low };
             let [by_thrust, by_torque] = unit.effectiveness;
             for ((sum, by_f), by_q) in authority.iter_mut().zip(by_thrust).zip(by_torque) {
@@ -105,7 +105,7 @@ impl<'a, P: Quantity, I: Inverse, S: AllocationMethod<P>> Requests<'a, P, I, S> 
                 draw(&mut self.random, self.throttle),
                 draw(&mut self.random, self.throttle),
             ];
-            let efforts = self.tables.pair_of(index).efforts(throttles);
+            let efforts = self.tables.efforts_of(index, throttles);
             for ((effect, effort), factor) in unit.effectiveness.iter().zip(efforts).zip(factors) {
                 for (sum, effect) in wrench.iter_mut().zip(effect) {
                     *sum += effect * (factor * effort);

@@ -30,6 +30,9 @@ struct Arguments {
     /// Frames of two pairs
     #[arg(long)]
     unlike: bool,
+    /// Frames with single rotors
+    #[arg(long)]
+    single_rotors: bool,
     /// Where the airframes of failures are written
     #[arg(short, long, value_name = "FOLDER", default_value = "target/soak")]
     output: PathBuf,
@@ -57,6 +60,10 @@ fn run(arguments: &Arguments) -> Result<usize, String> {
         None => frames::zoo(arguments.seed)?,
     };
     let zoo = if arguments.unlike { zoo.unlike() } else { zoo };
+    let zoo = match arguments.single_rotors {
+        true => zoo.with_single_rotors(),
+        false => zoo,
+    };
     let end = Instant::now() + Duration::from_secs_f64(60.0 * arguments.minutes);
     let mut soak = Soak::new(zoo, arguments.seed);
     let mut failures = 0;

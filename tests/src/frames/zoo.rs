@@ -27,6 +27,7 @@ pub struct Zoo {
     seed: u64,
     pairs: Vec<Pair>,
     is_unlike: bool,
+    has_single_rotors: bool,
 }
 
 /// A frame of the zoo.
@@ -46,6 +47,16 @@ impl Zoo {
             seed,
             pairs,
             is_unlike: false,
+            has_single_rotors: false,
+        }
+    }
+
+    /// The same frames with single rotors in the front half of their units, where they have several.
+    #[must_use]
+    pub fn with_single_rotors(self) -> Zoo {
+        Zoo {
+            has_single_rotors: true,
+            ..self
         }
     }
 
@@ -89,7 +100,17 @@ impl Zoo {
             text.insert_str(end, &format!("\n[[pair]]\nname = \"rear\"\n{rear}"));
         }
         write_allocation(&mut text, class, &pair, units.len(), &mut random);
-        write_units(&mut text, &units, is_unlike.then_some(&is_rear), &mut random);
+        let has_single_rotors = self.has_single_rotors && units.len() > 1;
+        if has_single_rotors {
+            write_single_rotor(&mut text, &pair, &mut of_rear);
+        }
+        let of_unit = |unit: usize| match (is_rear[unit], is_unlike) {
+            (false, _) if has_single_rotors => Some("rotor = \"single\""),
+            (true, true) => Some("pair = \"rear\""),
+            (false, true) => Some("pair = \"front\""),
+            _ => None,
+        };
+        write_units(&mut text, &units, &of_unit, &mut random);
         Specimen { class, text }
     }
 }
@@ -244,8 +265,40 @@ fn behind(units: &[Unit]) -> Vec<bool> {
     (0..units.len()).map(|unit| rear.contains(&unit)).collect()
 }
 
-fn write_units(text: &mut String, units: &[Unit], is_rear: Option<&Vec<bool>>, random: &mut Random) {
+/// A single rotor of about half of a pair's thrust. Its torque over thrust differs by some ten percent over the throttle
+/// range, as it does on benches.
+fn write_single_rotor(text: &mut String, pair: &Pair, random: &mut Random) {
+    let [f, q] = pair.largest();
+    let share = random.uniform(0.4, 0.65);
+    let (linear, cubic) = (random.uniform(0.01, 0.1), random.uniform(-0.35, 0.0));
+    let curve = |full: f64, linear: f64, cubic: f64| {
+        list(&[linear, 1.0 - linear - cubic, cubic].map(|part| three_digits(part * share * full)))
+    };
+    let thrust = curve(f, linear, cubic);
+    let (more, bend) = (random.uniform(-0.005, 0.03), random.uniform(-0.05, 0.05));
+    let torque = curve(q, linear + more, cubic + bend);
+    let _ = write!(
+        text,
+        "\n[[rotor]]\nname = \"single\"\nthrust_n = {thrust}\ntorque_nm = {torque}\n"
+    );
+    // Least power is for pairs.
+    let without = |line: &&str| !line.starts_with("power_bias");
+    *text = text
+        .lines()
+        .filter(without)
+        .map(|line| format!("{line}\n"))
+        .collect();
+}
+
+fn write_units(
+    text: &mut String,
+    units: &[Unit],
+    of_unit: &dyn Fn(usize) -> Option<&'static str>,
+    random: &mut Random,
+) {
     let n = units.len();
+    let is_single = |unit: usize| of_unit(unit).is_some_and(|line| line.starts_with("rotor"));
+    let singles = (0..n).filter(|unit| is_single(*unit)).count();
     let mut channels: Vec<usize> = match random.below(3) {
         0 => (0..2 * n).collect(),
         _ => (0..n).flat_map(|k| [k, n + k]).collect(),
@@ -253,8 +306,22 @@ fn write_units(text: &mut String, units: &[Unit], is_rear: Option<&Vec<bool>>, r
     if random.below(3) == 0 {
         random.shuffle(&mut channels);
     }
-    for (index, (unit, channels)) in units.iter().zip(channels.chunks(2)).enumerate() {
-        let spin = if unit.clockwise { Spin::Cw } else { Spin::Ccw };
+    if singles > 0 {
+        channels.retain(|channel| *channel < 2 * n - singles);
+    }
+    let mut channels = channels.into_iter();
+    let mut is_clockwise = false;
+    for (index, unit) in units.iter().enumerate() {
+        let rotors = if is_single(index) { 1 } else { 2 };
+        let channels: Vec<usize> = channels.by_ref().take(rotors).collect();
+        // Single rotors must balance each other.
+        is_clockwise ^= is_single(index);
+        let is_clockwise = if is_single(index) {
+            is_clockwise
+        } else {
+            unit.clockwise
+        };
+        let spin = if is_clockwise { Spin::Cw } else { Spin::Ccw };
         // No negative zeros.
         let [x, y, z] = unit.position.map(|place| (place * 1e6).round() / 1e6 + 0.0);
         let _ = write!(
@@ -262,12 +329,8 @@ fn write_units(text: &mut String, units: &[Unit], is_rear: Option<&Vec<bool>>, r
             "\n[[unit]]\nposition_m = [{x:?}, {y:?}, {z:?}]\nupper_spin = \"{}\"\nchannels = {channels:?}\n",
             spin.name()
         );
-        if let Some(is_rear) = is_rear {
-            let _ = writeln!(
-                text,
-                "pair = \"{}\"",
-                if is_rear[index] { "rear" } else { "front" }
-            );
+        if let Some(line) = of_unit(index) {
+            let _ = writeln!(text, "{line}");
         }
         if unit.axis != [0.0, 0.0, -1.0] {
             let [x, y, z] = unit.axis;

@@ -33,7 +33,7 @@ impl Draw<'_> {
             random,
             health,
         } = self;
-        let rotors = 2 * frame.physics.units();
+        let rotors = frame.physics.rotors();
         let shares: Vec<f64> = (0..rotors).map(|_| random.uniform(0.0, 1.0)).collect();
         let throttles = frame.physics.throttles(shares.into_iter(), *health);
         let factors = frame.physics.factors_in(volts, density);

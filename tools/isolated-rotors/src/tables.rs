@@ -140,14 +140,16 @@ fn torque_per_thrust(map: &PairMap) -> f64 {
 /// B by output channel.
 fn rotor_columns(airframe: &Airframe, effectiveness: &Effectiveness, kappa_m: f64) -> DMatrix<f64> {
     let n = airframe.units.len();
-    let mut columns = DMatrix::zeros(4, 2 * n);
+    let mut columns = DMatrix::zeros(4, airframe.rotors());
     for (i, unit) in airframe.units.iter().enumerate() {
         for axis in &airframe.allocation.axes {
             let axis = *axis as usize;
             let by_thrust = effectiveness.matrix[(axis, i)];
             let by_torque = kappa_m * effectiveness.matrix[(axis, n + i)];
             columns[(axis, unit.upper_channel)] = by_thrust - by_torque;
-            columns[(axis, unit.lower_channel)] = by_thrust + by_torque;
+            if let Some(lower) = unit.lower_channel {
+                columns[(axis, lower)] = by_thrust + by_torque;
+            }
         }
     }
     columns

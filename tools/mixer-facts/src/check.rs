@@ -130,7 +130,10 @@ fn units(compiled: &Compiled) -> String {
     let mut text = "unit   x (m)    y (m)    z (m)    upper spin  upper channel  lower channel\n".to_owned();
     for (index, unit) in compiled.airframe.units.iter().enumerate() {
         let [x, y, z] = unit.position_m;
-        let (spin, upper, lower) = (unit.upper_spin.name(), unit.upper_channel, unit.lower_channel);
+        let (spin, upper) = (unit.upper_spin.name(), unit.upper_channel);
+        let lower = unit
+            .lower_channel
+            .map_or("none".to_owned(), |channel| channel.to_string());
         let _ = writeln!(
             text,
             "{index:<4}  {x:>7.4}  {y:>7.4}  {z:>7.4}    {spin:<10}  {upper:<13}  {lower}"

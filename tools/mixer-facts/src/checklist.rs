@@ -29,15 +29,12 @@ impl fmt::Display for Checklist<'_> {
         f.write_str("on the bench    propellers off, outputs one by one; spins as seen from above\n")?;
         let units = &self.0.airframe.units;
         for (index, unit) in units.iter().enumerate() {
-            writeln!(
-                f,
-                "  unit {index:<9} {}: output {} upper, {}; output {} lower, {}",
-                place(unit, units),
-                unit.upper_channel,
-                unit.upper_spin.in_words(),
-                unit.lower_channel,
-                unit.upper_spin.reversed().in_words()
-            )?;
+            let rotors = unit.rotors().map(|rotor| {
+                let (channel, spin) = (rotor.channel, rotor.spin.in_words());
+                format!("output {channel} {}, {spin}", rotor.layer)
+            });
+            let rotors = rotors.collect::<Vec<_>>().join("; ");
+            writeln!(f, "  unit {index:<9} {}: {rotors}", place(unit, units))?;
         }
         for axis in Axis::ALL {
             if let Some(rises) = self.rises_in_words(axis) {
@@ -115,13 +112,16 @@ fn size(compiled: &Compiled, axis: Axis) -> f64 {
     compiled.effectiveness.largest(axis as usize, &scales)
 }
 
-/// Every unit in words: its place, its outputs, and how its upper rotor spins:
-/// `front right: outputs 0 and 4 (upper cw)`.
-pub fn in_words(units: &[([f64; 3], Spin, [usize; 2])]) -> Vec<String> {
+/// Every unit in words: its place, its outputs, and how its upper rotor spins, by place, spin and outputs:
+/// `front right: outputs 0 and 4 (upper cw)`, `rear: output 2 (single ccw)`.
+pub fn in_words(units: &[([f64; 3], Spin, (usize, Option<usize>))]) -> Vec<String> {
     let places: Vec<[f64; 3]> = units.iter().map(|(place, ..)| *place).collect();
-    let each = units.iter().map(|(position_m, spin, [upper, lower])| {
-        let place = place_among(*position_m, &places);
-        format!("{place}: outputs {upper} and {lower} (upper {})", spin.name())
+    let each = units.iter().map(|(position_m, spin, (upper, lower))| {
+        let (place, spin) = (place_among(*position_m, &places), spin.name());
+        match lower {
+            Some(lower) => format!("{place}: outputs {upper} and {lower} (upper {spin})"),
+            None => format!("{place}: output {upper} (single {spin})"),
+        }
     });
     each.collect()
 }

@@ -158,14 +158,22 @@ fn gives(list: &mut List, compiled: &Compiled) {
         [shortest, longest] if shortest == longest => format!(", arms of {longest} m"),
         [shortest, longest] => format!(", arms of {shortest} to {longest} m"),
     };
-    let words = format!(" in {units} coaxial units{told}");
+    let single = airframe
+        .units
+        .iter()
+        .filter(|unit| unit.lower_channel.is_none())
+        .count();
+    let and_single = or_nothing(Some(single).filter(|single| *single > 0), |single| {
+        format!(" and {single} single ones")
+    });
+    let words = format!(" in {} coaxial units{and_single}{told}", units - single);
     list.say("rotors", airframe.rotors(), "", words)
         .json("units", units)
         .json("rotors", airframe.rotors())
         .json("arms_m", arms)
         .in_verdict();
     let frame = airframe.units.iter().map(|unit| {
-        let outputs = [unit.upper_channel, unit.lower_channel];
+        let outputs = (unit.upper_channel, unit.lower_channel);
         (unit.position_m, unit.upper_spin, outputs)
     });
     let frame = checklist::in_words(&frame.collect::<Vec<_>>())
@@ -197,7 +205,7 @@ fn gives(list: &mut List, compiled: &Compiled) {
     let (share, needed) = (100.0 * floor / ceiling, (1e3 * compiled.least_idle).ceil() / 1e3);
     let mut of_pairs = compiled.of_each_pair().into_iter();
     let needs_most = of_pairs.find(|of_pair| of_pair.least_idle == compiled.least_idle);
-    let whose = or_nothing(needs_most.filter(|_| airframe.is_unlike()), |of_pair| {
+    let whose = or_nothing(needs_most.filter(|_| airframe.pairs().count() > 1), |of_pair| {
         format!(" of pair \"{}\"", of_pair.airframe.pair.name)
     });
     let words =
@@ -293,10 +301,14 @@ fn hover(list: &mut List, compiled: &Compiled) {
             format!("yaw {least:.3} to {most:.3} N m")
         });
         let article = if out.layer == "upper" { "an" } else { "a" };
-        format!(
-            "{yaw} with {article} {} rotor out (output {})",
-            out.layer, out.output
-        )
+        let outputs = match out.not_level.as_slice() {
+            [] | [_] => format!("output {}", out.output),
+            several => {
+                let several: Vec<String> = several.iter().map(usize::to_string).collect();
+                format!("any of outputs {}", several.join(", "))
+            }
+        };
+        format!("{yaw} with {article} {} rotor out ({outputs})", out.layer)
     });
     let reserve = compiled.airframe.allocation.yaw_reserve_nm;
     let words = format!(

@@ -4,8 +4,8 @@
 //! PX4's CA_ROTOR*, ArduPilot's FRAME_*                                 parameters.rs
 //!   -> rotors: channel, place, axis, spin                              ../stacks/*/import.rs
 //!   -> what the outputs send, and to which motor                       outputs.rs
-//!   -> units: two rotors in one place, which is on top                 pairs.rs
-//!   -> what is said of single rotors and not used                      unused.rs
+//!   -> units: two rotors in one place, which is on top; single ones    pairs.rs
+//!   -> what is said of each rotor and not used                         unused.rs
 //!   -> the airframe file, with what the parameters do not say named    text.rs
 //! ```
 
@@ -99,6 +99,7 @@ pub fn import(file: &Source, pair: Option<&Source>, options: &Options<'_>) -> Re
         .map(|unit| (unit.position_m, unit.upper_spin, unit.channels));
     let frame = checklist::in_words(&frame.collect::<Vec<_>>()).join("; ");
     imported.notes.push(format!("the frame is {frame}"));
+    imported.notes.extend(pairs::alone(&units));
     let places: Vec<[f64; 3]> = units.iter().map(|unit| unit.position_m).collect();
     imported
         .notes
@@ -115,7 +116,7 @@ pub fn import(file: &Source, pair: Option<&Source>, options: &Options<'_>) -> Re
     }
     let name = options
         .name
-        .map_or_else(|| text::default_name(units.len()), str::to_owned);
+        .map_or_else(|| text::default_name(&units), str::to_owned);
     Ok(Import {
         text: text::airframe(&name, file, &imported, &tables),
         has_places: imported.has_places,

@@ -64,7 +64,7 @@ fn property(key: &Key) -> Value {
         ValueKind::Count([least, most]) => json!({ "type": "integer", "minimum": least, "maximum": most }),
         ValueKind::Numbers(count) => array(number(), count),
         ValueKind::Points => json!({ "type": "array", "items": array(number(), [2, 2]) }),
-        ValueKind::Channels => array(channel(), [2, 2]),
+        ValueKind::Channels => array(channel(), [1, 2]),
         ValueKind::ListOfChannels => json!({ "type": "array", "items": array(channel(), [2, 2]) }),
         ValueKind::Table(shape) => table(shape),
         // What is said of properties holds of tables alone, what is said of items of lists.

@@ -126,7 +126,7 @@ impl<'a> Draw<'a> {
             [low, correction.reference, high]
         };
         let maps: Vec<PairMap> = airframe
-            .pairs()
+            .kinds()
             .map(|pair| PairMap::new(pair, &airframe.throttle))
             .collect();
         let border = |map: &PairMap| {

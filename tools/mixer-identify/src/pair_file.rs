@@ -68,6 +68,17 @@ impl PairFile {
         float(self.0.get(table)?.as_table_like()?.get(key)?)
     }
 
+    /// `[thrust_n, torque_nm]` of a rotor alone, `lower_out` or `upper_out` of `[pair]`.
+    pub fn curve(&self, name: &str) -> Option<[[f64; 3]; 2]> {
+        let table = self.0.get("pair")?.get(name)?;
+        let list = |key| {
+            let terms = table.get(key)?.as_array()?.iter();
+            let terms = terms.map(|term| term.as_float().or_else(|| Some(term.as_integer()? as f64)));
+            <[f64; 3]>::try_from(terms.collect::<Option<Vec<f64>>>()?).ok()
+        };
+        Some([list("thrust_n")?, list("torque_nm")?])
+    }
+
     /// `[throttle]`, `[pair]`, `[voltage]` and `[air]`, and the torque of least power, N m per N.
     pub fn model(&self) -> (String, Option<f64>) {
         self.tables(&OF_A_PAIR)

@@ -124,13 +124,12 @@ mod _native {
             &self.checked.compiled.airframe.name
         }
 
-        /// Channels of the upper and of the lower rotor per unit.
+        /// Channels of the upper and of the lower rotor per unit, of a single rotor its one.
         #[getter]
-        fn channels(&self) -> Vec<(usize, usize)> {
+        fn channels<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyTuple>>> {
             let units = self.checked.compiled.airframe.units.iter();
-            units
-                .map(|unit| (unit.upper_channel, unit.lower_channel))
-                .collect()
+            let channels = units.map(|unit| unit.channels().collect::<Vec<_>>());
+            channels.map(|channels| PyTuple::new(py, channels)).collect()
         }
 
         #[getter]

@@ -108,23 +108,20 @@ impl<const R: usize> Plant<R> {
                 [rotor.hover_throttle, 2.0 * rotor.lead_s * rotor.torque_nm]
             });
             let speed = motor.speed_at_reference(throttle);
-            (
-                Pair::new(&airframe.pair, &airframe.throttle),
-                speed,
-                momentum_nms / speed,
-            )
+            (speed, momentum_nms / speed)
         };
         let pairs: Vec<_> = airframe.of_each_pair().iter().map(of_pair).collect();
         let units = airframe.units.iter().map(|unit| Unit {
             position_m: Vector3::from(unit.position_m),
             axis: Vector3::from(unit.axis),
             spin_sign: airframe.spin_sign(unit),
-            channels: [unit.upper_channel, unit.lower_channel],
-            pair: pairs[unit.pair].0.clone(),
-            momentum_nms: pairs[unit.pair].2,
+            channels: [unit.upper_channel, unit.lower_channel.unwrap_or(usize::MAX)],
+            pair: Pair::new(airframe.pair_of(unit), &airframe.throttle),
+            // Of a single rotor that of a rotor of the first pair.
+            momentum_nms: pairs.get(unit.pair).unwrap_or(&pairs[0]).1,
         });
         // All rotors have one lag, at the mean of their speeds in hover where pairs differ.
-        let speed = pairs.iter().map(|(_, speed, _)| speed).sum::<f64>() / pairs.len() as f64;
+        let speed = pairs.iter().map(|(speed, _)| speed).sum::<f64>() / pairs.len() as f64;
         Plant {
             units: units.collect(),
             motor: motor.with_lag(body.rotor_lag_s, speed),

@@ -112,8 +112,9 @@ fn without_air_frame_and_rotors_conserve_their_angular_momentum() {
     let mut command = SVector::<f64, ROTORS>::repeat(0.3);
     for unit in &airframe.units {
         let sense = 0.2 * airframe.spin_sign(unit);
-        command[unit.upper_channel] += sense;
-        command[unit.lower_channel] -= sense;
+        for (channel, sense) in unit.channels().zip([sense, -sense]) {
+            command[channel] += sense;
+        }
     }
     let momentum = |state: &State<ROTORS>| {
         let frame = INERTIA_KG_M2.component_mul(&state.rate);
@@ -147,8 +148,9 @@ fn yaw_begins_with_the_reaction_of_the_rotors() {
             let hover = plant.steady(&State::level(Vector3::zeros(), 0.0), &command);
             for unit in &airframe.units {
                 let sense = 1e-3 * airframe.spin_sign(unit);
-                command[unit.upper_channel] -= sense;
-                command[unit.lower_channel] += sense;
+                for (channel, sense) in unit.channels().zip([-sense, sense]) {
+                    command[channel] += sense;
+                }
             }
             let torque = |state: &State<ROTORS>| {
                 let dt_s = 1e-6;
@@ -246,7 +248,7 @@ fn the_conventional_mixer_agrees_with_the_oracle() {
         let efforts: Vec<[f64; 2]> = airframe
             .units
             .iter()
-            .map(|unit| map.efforts([throttle[unit.upper_channel], throttle[unit.lower_channel]]))
+            .map(|unit| map.efforts(unit.throttles(throttle.as_slice())))
             .collect();
         let thrusts = efforts.iter().map(|e| voltage.thrust_factor(volts) * e[0]);
         let torques = efforts.iter().map(|e| voltage.torque_factor(volts) * e[1]);

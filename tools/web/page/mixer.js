@@ -147,7 +147,8 @@ class Hand {
   }
 
   rotors() {
-    const label = ({ channel, layer, unit }) => `${channel} ${"\u2191\u2193"[layer]} ${unit.place}`;
+    const arrow = ({ channels }, layer) => (channels.length > 1 ? `${"\u2191\u2193"[layer]} ` : "");
+    const label = ({ channel, layer, unit }) => `${channel} ${arrow(unit, layer)}${unit.place}`;
     document.getElementById("rotors").replaceChildren(...this.all().map((rotor) => {
       const button = element("button", { type: "button", textContent: label(rotor) });
       button.dataset.output = rotor.channel;

@@ -49,8 +49,8 @@ pub struct Drawn {
     pub place_m: [f64; 2],
     /// In words, as `front right`.
     pub place: String,
-    /// Outputs of the upper and of the lower rotor.
-    pub channels: [usize; 2],
+    /// Outputs of its rotors, the upper one first.
+    pub channels: Vec<usize>,
     /// How the upper rotor turns, `cw` or `ccw`.
     pub upper_spin: &'static str,
 }
@@ -63,7 +63,7 @@ pub fn scene(checked: &Checked) -> Scene {
         let map = PairMap::new(pair, &airframe.throttle);
         map.border(BORDER).into_iter().map(|t| map.efforts(t)).collect()
     };
-    let borders: Vec<Vec<[f64; 2]>> = airframe.pairs().map(border).collect();
+    let borders: Vec<Vec<[f64; 2]>> = airframe.kinds().map(border).collect();
     let mut extent = [[0.0, 0.0]; 2];
     let [top_v, top_density] =
         [&airframe.voltage, &airframe.air].map(|of| of.as_ref().map_or(0.0, |of| of.range[1]));
@@ -78,7 +78,7 @@ pub fn scene(checked: &Checked) -> Scene {
     let drawn = |unit: &Unit| Drawn {
         place_m: [unit.position_m[0], unit.position_m[1]],
         place: list.place(unit),
-        channels: [unit.upper_channel, unit.lower_channel],
+        channels: unit.channels().collect(),
         upper_spin: unit.upper_spin.name(),
     };
     let largest = Axis::ALL.map(|axis| match axis {

@@ -61,7 +61,7 @@ def drag(desk, slider, share):
     mouse.up()
 
 
-@pytest.mark.parametrize("name", ["isae-x8", "px4-x12", "px4-y6", "x8-11in-least-power", "x8-22-16in", "coaxial-bicopter", "single-pair"])
+@pytest.mark.parametrize("name", ["isae-x8", "px4-x12", "px4-y6", "x8-11in-least-power", "x8-22-16in", "y4", "coaxial-bicopter", "single-pair"])
 def test_throttles_are_those_of_mix(hand, name):
     desk = hand(name)
     row, before = same_as_mix(desk, f"{name}.toml")

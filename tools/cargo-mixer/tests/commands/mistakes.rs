@@ -117,7 +117,7 @@ fn numbers(text: &str) -> Vec<f64> {
     let throttles = [[0.4, 0.4], [0.9, 0.9], [0.9, 0.4], [0.4, 0.9]];
     let efforts = throttles.into_iter().flat_map(|t| map.efforts(t));
     let units = airframe.units.iter().flat_map(|unit| {
-        let [a, b] = [unit.upper_channel, unit.lower_channel].map(|c| c as f64);
+        let [a, b] = [Some(unit.upper_channel), unit.lower_channel].map(|c| c.map_or(-1.0, |c| c as f64));
         unit.position_m.into_iter().chain([
             a,
             b,

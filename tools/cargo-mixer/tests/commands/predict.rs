@@ -158,9 +158,7 @@ fn predicted_airframes_lift_what_is_asked() {
             let volts = predicted.reference_v.unwrap_or_default() as f32;
             let (throttles, ..) = compiled.tables.mix(&setpoint, volts).expect("a mix");
             let units = &compiled.airframe.units;
-            let places = units.iter().map(|unit| {
-                [unit.upper_channel, unit.lower_channel].map(|channel| f64::from(throttles[channel]))
-            });
+            let places = units.iter().map(|unit| unit.throttles(&throttles));
             let places: Vec<[f64; 2]> = places.collect();
             // Within what the map measured; its polynomial is a guess elsewhere.
             if places.iter().flatten().all(|t| (lowest..=0.96).contains(t)) {

@@ -6,7 +6,7 @@
 //! the iterations of the interior point method: a product of their largest number and the
 //! cost of one (`cargo counts`). The tests hold the sum to the counts of whole mixers.
 
-use mixer_rt::tables::{Facets, MOST_ITERATIONS, Outline};
+use mixer_rt::tables::{Facets, MOST_ITERATIONS, Outline, PASSES};
 
 use mixer_compiler::Compiled;
 use mixer_compiler::airframe::Basis;
@@ -63,6 +63,12 @@ const ITERATION_UNIT: [u32; 2] = [355, 420];
 /// The pair of a unit looked up among several, in least norm or in an iteration.
 const KIND: u32 = 25;
 
+/// A pass over single rotors, and one unit in it that is one; such a unit after the passes, and its throttle found apart.
+const PASS: u32 = 60;
+const PASS_UNIT: u32 = 190;
+const SINGLE_UNIT: u32 = 130;
+const SINGLE_APART: u32 = 350;
+
 /// A slack of the request in all iterations: that of a reserve, and that of yaw beyond the request with rotors out.
 const SLACK: u32 = MOST_ITERATIONS * 60;
 
@@ -83,15 +89,27 @@ pub(super) fn bound(compiled: &Compiled) -> Option<u32> {
 /// The bound with any number of rotors out, of every frame.
 pub(super) fn with_rotors_out(compiled: &Compiled) -> Option<u32> {
     let n = compiled.tables.units.len() as u32;
-    let least_norm = least_norm(compiled)? + ROTORS_OUT + n * ROTORS_OUT_UNIT;
+    let apart = single(compiled) * SINGLE_APART;
+    let least_norm = least_norm(compiled)? + ROTORS_OUT + n * ROTORS_OUT_UNIT + apart;
     Some(least_norm + per_mix(compiled) + interior(compiled, 1))
 }
 
 /// Least norm of all units.
 fn least_norm(compiled: &Compiled) -> Option<u32> {
     let basis = compiled.airframe.pair.basis;
-    let n = compiled.tables.units.len() as u32;
-    Some(n * (compiled.evaluator.instructions(basis)? + forward(basis) + PER_UNIT + kind(compiled)))
+    let (n, single) = (compiled.tables.units.len() as u32, single(compiled));
+    let pair = compiled.evaluator.instructions(basis)? + forward(basis) + PER_UNIT + kind(compiled);
+    let passes = match single {
+        0 => 0,
+        _ => PASSES * (PASS + n * KIND + single * PASS_UNIT) + single * SINGLE_UNIT,
+    };
+    Some((n - single) * pair + passes)
+}
+
+/// How many units are single rotors.
+fn single(compiled: &Compiled) -> u32 {
+    let units = compiled.airframe.units.iter();
+    units.filter(|unit| unit.lower_channel.is_none()).count() as u32
 }
 
 /// The interior point method: all iterations, with so many slacks beside that of a reserve.

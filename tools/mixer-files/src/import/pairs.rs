@@ -1,4 +1,4 @@
-//! Rotors to units: two on one axis, which contra-rotate.
+//! Rotors to units: two on one axis, which contra-rotate, or a single one beside such pairs.
 
 use super::rotors::{Rotor, Unit};
 
@@ -7,6 +7,9 @@ const SAME_AXIS_M: f64 = 5e-3;
 
 /// Cosine of the angle under which axes are parallel: a degree.
 const PARALLEL: f64 = 0.999_85;
+
+/// Distance of two rotors side by side over the arm of one, below which they would overlap: those of 12 arms are 0.52 apart.
+const OVERLAP: f64 = 0.25;
 
 /// Layers nearer than this are one, m.
 const SAME_LAYER_M: f64 = 1e-4;
@@ -18,25 +21,27 @@ pub(super) fn pair(rotors: &[Rotor], upper: &[usize]) -> Result<Vec<Unit>, Strin
         let last = rotors.len().max(1) - 1;
         return Err(format!("--upper {channel}: the outputs are 0 to {last}"));
     }
-    let is_alone = |rotor: &&Rotor| partners(rotors, rotor).next().is_none();
-    let alone: Vec<&Rotor> = rotors.iter().filter(is_alone).collect();
-    if let ([first, second], 4) = (&alone[..], rotors.len()) {
-        return Err(format!(
-            "{}: a Y4: rotors {} and {} are alone, and two are a pair. The mixer is for frames whose rotors are all in pairs",
-            first.place, first.channel, second.channel
-        ));
-    }
     let mut units: Vec<Unit> = Vec::new();
     for rotor in rotors {
         let mut partners = partners(rotors, rotor);
         let partner = match (partners.next(), partners.next()) {
             (Some(partner), None) => partner,
             (None, _) => {
-                let [x, y, _] = rotor.position_m;
-                return Err(format!(
-                    "{}: rotor {} at ({x}, {y}) m is alone: give the two rotors of a pair one place, one above the other",
-                    rotor.place, rotor.channel
-                ));
+                if let Some((other, apart)) = too_near(rotor, rotors) {
+                    let [x, y, _] = rotor.position_m;
+                    return Err(format!(
+                        "{}: rotor {} at ({x}, {y}) m is alone, {apart:.3} m from rotor {}: give the two rotors of a pair one \
+                         place, one above the other",
+                        rotor.place, rotor.channel, other.channel
+                    ));
+                }
+                units.push(Unit {
+                    position_m: rotor.position_m,
+                    axis: rotor.axis,
+                    upper_spin: rotor.spin,
+                    channels: (rotor.channel, None),
+                });
+                continue;
             }
             (Some(first), Some(second)) => {
                 return Err(format!(
@@ -45,13 +50,52 @@ pub(super) fn pair(rotors: &[Rotor], upper: &[usize]) -> Result<Vec<Unit>, Strin
                 ));
             }
         };
-        let is_paired = |channel| units.iter().any(|unit| unit.channels.contains(&channel));
+        let is_paired = |channel| {
+            let mut units = units.iter();
+            units.any(|unit: &Unit| unit.channels.0 == channel || unit.channels.1 == Some(channel))
+        };
         if !is_paired(rotor.channel) && !is_paired(partner.channel) {
             units.push(unit(rotor, partner, upper)?);
         }
     }
-    units.sort_by_key(|unit| unit.channels[0]);
+    if let (Some(rotor), true) = (rotors.first(), units.iter().all(|unit| unit.channels.1.is_none())) {
+        let [x, y, _] = rotor.position_m;
+        return Err(format!(
+            "{}: rotor {} at ({x}, {y}) m is alone, as all others are: the mixer is for frames with a pair of rotors; give \
+             the two of a pair one place, one above the other",
+            rotor.place, rotor.channel
+        ));
+    }
+    units.sort_by_key(|unit| unit.channels);
     Ok(units)
+}
+
+/// A rotor so near to one that is alone that they would overlap, and how near, m.
+fn too_near<'a>(rotor: &Rotor, rotors: &'a [Rotor]) -> Option<(&'a Rotor, f64)> {
+    let [x, y, _] = rotor.position_m;
+    let others = rotors.iter().filter(|other| other.channel != rotor.channel);
+    let apart = others.map(|other| {
+        let [at_x, at_y, _] = other.position_m;
+        (other, libm::hypot(at_x - x, at_y - y))
+    });
+    let nearest = apart.min_by(|a, b| a.1.total_cmp(&b.1));
+    nearest.filter(|(_, apart)| *apart < OVERLAP * libm::hypot(x, y))
+}
+
+/// What single rotors are told as; none where all are in pairs.
+pub(super) fn alone(units: &[Unit]) -> Option<String> {
+    let alone = units.iter().filter(|unit| unit.channels.1.is_none());
+    let alone: Vec<String> = alone.map(|unit| unit.channels.0.to_string()).collect();
+    match alone.as_slice() {
+        [] => None,
+        [one] => Some(format!(
+            "rotor {one} has no partner on its axis: it is a single rotor"
+        )),
+        several => Some(format!(
+            "rotors {} have no partners on their axes: they are single rotors",
+            several.join(", ")
+        )),
+    }
 }
 
 fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
@@ -113,7 +157,7 @@ fn unit(rotor: &Rotor, other: &Rotor, upper: &[usize]) -> Result<Unit, String> {
         }),
         axis: upper.axis,
         upper_spin: upper.spin,
-        channels: [upper.channel, lower.channel],
+        channels: (upper.channel, Some(lower.channel)),
     })
 }
 
@@ -140,10 +184,17 @@ mod tests {
         let upper = rotor(3, [0.1, 0.2, -0.05], Spin::Cw);
         let lower = rotor(1, [0.1, 0.2, 0.03], Spin::Ccw);
         let units = pair(&[lower.clone(), upper.clone()], &[]).unwrap();
-        assert_eq!((units[0].channels, units[0].upper_spin), ([3, 1], Spin::Cw));
+        assert_eq!((units[0].channels, units[0].upper_spin), ((3, Some(1)), Spin::Cw));
         assert_eq!(units[0].position_m, [0.1, 0.2, -0.01]);
+        let beside = rotor(0, [-0.4, 0.0, 0.0], Spin::Cw);
+        let units_beside = pair(&[lower.clone(), beside, upper.clone()], &[]).unwrap();
+        let channels: Vec<_> = units_beside.iter().map(|unit| unit.channels).collect();
+        assert_eq!(channels, [(0, None), (3, Some(1))]);
         let swapped = pair(&[lower.clone(), upper.clone()], &[1]).unwrap();
-        assert_eq!((swapped[0].channels, swapped[0].upper_spin), ([1, 3], Spin::Ccw));
+        assert_eq!(
+            (swapped[0].channels, swapped[0].upper_spin),
+            ((1, Some(3)), Spin::Ccw)
+        );
 
         let level = rotor(3, [0.1, 0.2, 0.03], Spin::Cw);
         let alike = rotor(3, [0.1, 0.2, -0.05], Spin::Ccw);
@@ -194,7 +245,7 @@ mod tests {
         let units = pair(&rotors, &[]).unwrap();
         assert_eq!(
             (units[0].channels, units[0].position_m, units[0].axis),
-            ([0, 1], [0.3, 0.0, 0.0], axis)
+            ((0, Some(1)), [0.3, 0.0, 0.0], axis)
         );
     }
 }

@@ -36,7 +36,7 @@ pub struct Stated {
     pub is_dshot: bool,
 }
 
-/// Settings of single rotors: the mixer has one pair for all units.
+/// Settings of one rotor: the file has one pair for all units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Own {
     /// Thrust per command, of any unit: PX4's `CA_ROTORn_CT`, the throttle factor of a `mmix`. 0 leaves a rotor out.
@@ -59,7 +59,7 @@ impl Own {
     };
 }
 
-/// A motor that is no rotor of a pair.
+/// A motor that is no rotor.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct LeftOut {
     /// Its number in the stack, from 0.
@@ -70,14 +70,14 @@ pub(crate) struct LeftOut {
     pub(crate) why: &'static str,
 }
 
-/// Two rotors in one place.
+/// Two rotors in one place, or a single one.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Unit {
     pub(crate) position_m: [f64; 3],
     pub(crate) axis: [f64; 3],
     pub(crate) upper_spin: Spin,
-    /// Of the upper and of the lower rotor.
-    pub(crate) channels: [usize; 2],
+    /// Of the upper rotor, and of the lower one where there is one.
+    pub(crate) channels: (usize, Option<usize>),
 }
 
 /// Pulse widths of throttle 0 and 1.

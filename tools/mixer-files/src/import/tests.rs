@@ -167,7 +167,11 @@ fn cases() -> Vec<(&'static str, String, Outcome)> {
             instead("COUNT,8", "COUNT,16"),
             Refused("not a number from 1 to 12"),
         ),
-        ("an odd count", instead("COUNT,8", "COUNT,7"), Refused("is alone")),
+        (
+            "an odd count",
+            instead("COUNT,8", "COUNT,7"),
+            Noted("rotor 3 has no partner"),
+        ),
         (
             "rotors left out",
             with("CA_ROTOR8_PX,0.5\n"),
@@ -284,7 +288,7 @@ fn cases() -> Vec<(&'static str, String, Outcome)> {
             "thrust of one rotor",
             with("CA_ROTOR2_CT,4.5\n"),
             Noted(
-                "the upper rotors 0 and 2 have thrusts of 6.5 and 4.5, and the file gives all units one pair",
+                "the upper rotors 0 and 2 have thrusts of 6.5 and 4.5, and the file gives all of them one map",
             ),
         ),
         (
@@ -424,7 +428,7 @@ fn cases() -> Vec<(&'static str, String, Outcome)> {
             "a throttle of one motor",
             dump(&octox8.replace("mmix 3 1.000", "mmix 3 0.900")),
             Noted(
-                "the upper rotors 0 and 3 have thrusts of 1 and 0.9, and the file gives all units one pair",
+                "the upper rotors 0 and 3 have thrusts of 1 and 0.9, and the file gives all of them one map",
             ),
         ),
         (
@@ -435,7 +439,9 @@ fn cases() -> Vec<(&'static str, String, Outcome)> {
         (
             "Y4",
             dump("mmix 0 1 0 1 -1\nmmix 1 1 -1 -1 0\nmmix 2 1 0 1 1\nmmix 3 1 1 -1 0"),
-            Refused("a Y4: rotors 1 and 3 are alone"),
+            Noted(
+                "rear: outputs 0 and 2 (upper cw); front right: output 1 (single ccw); front left: output 3 (single cw)",
+            ),
         ),
         (
             "OCTOX8 reversed",
@@ -699,7 +705,7 @@ fn airframe_of(text: &str) -> (Import, Airframe) {
 
 /// What a stack's files say of a frame: outputs, spins and places; of Betaflight's factors, which have no metres and a scale
 /// of their own per axis, places over the longest.
-fn frame(airframe: &Airframe, stack: Stack) -> Vec<([usize; 2], Spin, [f64; 3])> {
+fn frame(airframe: &Airframe, stack: Stack) -> Vec<((usize, Option<usize>), Spin, [f64; 3])> {
     let units = || airframe.units.iter();
     let longest = |axis: usize| units().fold(1e-9, |most: f64, unit| most.max(unit.position_m[axis].abs()));
     let scales = match stack {
@@ -708,7 +714,8 @@ fn frame(airframe: &Airframe, stack: Stack) -> Vec<([usize; 2], Spin, [f64; 3])>
     };
     let unit = |unit: &mixer_compiler::airframe::Unit| {
         let place = std::array::from_fn(|axis| unit.position_m[axis] / scales[axis]);
-        ([unit.upper_channel, unit.lower_channel], unit.upper_spin, place)
+        let outputs = (unit.upper_channel, unit.lower_channel);
+        (outputs, unit.upper_spin, place)
     };
     units().map(unit).collect()
 }

@@ -15,6 +15,9 @@ use mixer_compiler::diagnostic::printable_lines;
 /// Characters of a line of comment.
 const COMMENT: usize = 110;
 
+/// The name of the single rotors.
+const SINGLE: &str = "single";
+
 /// Idle where nothing says one.
 const IDLE: f64 = 0.1;
 
@@ -36,6 +39,9 @@ pub(super) fn tables(imported: &mut Imported, units: &[Unit], pair: Option<&Pair
         Some(pair) => out += &pair.tables(TAKEN).0,
         None => out += "# [pair]                               # basis, thrust_n, torque_nm, upper_spin\n\n",
     }
+    if units.iter().any(|unit| unit.channels.1.is_none()) {
+        out += &single_rotor(imported, pair);
+    }
     if !out.contains("[air]") {
         out += Air::default().table(out.contains("\n[voltage]")).trim_start();
         out.push('\n');
@@ -48,16 +54,38 @@ pub(super) fn tables(imported: &mut Imported, units: &[Unit], pair: Option<&Pair
             true => String::new(),
             false => format!("axis = {:?}\n", unit.axis),
         };
+        let channels = match unit.channels {
+            (upper, Some(lower)) => format!("[{upper}, {lower}]"),
+            (single, None) => format!("[{single}]\nrotor = \"{SINGLE}\""),
+        };
         format!(
-            "[[unit]]                               # {index}\nposition_m = {:?}\n{axis}upper_spin = \"{}\"\nchannels = {:?}\n",
+            "[[unit]]                               # {index}\nposition_m = {:?}\n{axis}upper_spin = \"{}\"\nchannels = {channels}\n",
             unit.position_m,
-            unit.upper_spin.name(),
-            unit.channels
+            unit.upper_spin.name()
         )
     };
     let units: Vec<String> = units.iter().enumerate().map(unit).collect();
     out += &units.join("\n");
     out
+}
+
+/// `[[rotor]]` of the single rotors: a rotor of the pair alone, where the pair's file has that, else in comments.
+fn single_rotor(imported: &mut Imported, pair: Option<&PairFile>) -> String {
+    let Some([thrust_n, torque_nm]) = pair.and_then(|pair| pair.curve("lower_out")) else {
+        imported.notes.push(
+            "nothing describes the single rotors: [[rotor]] has thrust and torque over the throttle, of a run of one alone"
+                .to_owned(),
+        );
+        return format!(
+            "# [[rotor]]                            # name = \"{SINGLE}\", thrust_n, torque_nm\n\n"
+        );
+    };
+    imported.notes.push(
+        "[[rotor]] is the upper rotor of the pair alone, [pair.lower_out]: if the single rotors are others, put a run of theirs there"
+            .to_owned(),
+    );
+    let torque_nm = torque_nm.map(|term| -term);
+    format!("[[rotor]]\nname = \"{SINGLE}\"\nthrust_n = {thrust_n:?}\ntorque_nm = {torque_nm:?}\n\n")
 }
 
 /// The file of these tables.
@@ -117,9 +145,12 @@ fn voltage(imported: &mut Imported, pair: Option<&PairFile>) -> String {
     )
 }
 
-pub(super) fn default_name(units: usize) -> String {
-    match units {
-        3 => "imported-y6".to_owned(),
-        units => format!("imported-x{}", 2 * units),
+pub(super) fn default_name(units: &[Unit]) -> String {
+    let single = units.iter().filter(|unit| unit.channels.1.is_none()).count();
+    match (units.len() - single, single) {
+        (3, 0) => "imported-y6".to_owned(),
+        (1, 2) => "imported-y4".to_owned(),
+        (pairs, 0) => format!("imported-x{}", 2 * pairs),
+        (pairs, single) => format!("imported-{}-rotors", 2 * pairs + single),
     }
 }

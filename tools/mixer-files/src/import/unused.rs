@@ -1,4 +1,4 @@
-//! What a stack's parameters say of single rotors, and the airframe file that is made, with one pair for all units, does not.
+//! What a stack's parameters say of each rotor, and the airframe file that is made, with one pair for all, does not.
 
 use super::rotors::{Own, Rotor, Unit};
 
@@ -14,29 +14,28 @@ const SAME_US: f64 = 2.0;
 /// A rotor that the stack leaves out.
 pub(super) fn notes(rotors: &[Rotor], units: &[Unit]) -> Result<Vec<String>, String> {
     let of = |channel: usize| rotors.iter().find(|rotor| rotor.channel == channel);
-    let layer = |k: usize| {
-        units
-            .iter()
-            .filter_map(move |unit| of(unit.channels[k]))
-            .collect()
-    };
-    let (layers, mut notes): ([Vec<&Rotor>; 2], _) = ([0, 1].map(layer), Vec::new());
+    let (mut layers, mut notes): ([Vec<&Rotor>; 3], _) = (Default::default(), Vec::new());
+    for unit in units {
+        let (first, lower) = unit.channels;
+        layers[if lower.is_some() { 0 } else { 2 }].extend(of(first));
+        layers[1].extend(lower.and_then(of));
+    }
     if let Some(rotor) = rotors.iter().find(|rotor| rotor.own.thrust == 0.0) {
         return Err(format!(
-            "{}: rotor {} has no thrust, and the stack leaves it out: a pair has two rotors",
+            "{}: rotor {} has no thrust, and the stack leaves it out: every rotor of the airframe file turns",
             rotor.place, rotor.channel
         ));
     }
-    for (name, layer) in ["upper", "lower"].into_iter().zip(&layers) {
+    for (name, layer) in ["upper", "lower", "single"].into_iter().zip(&layers) {
         notes.extend(different(name, layer, "thrusts", |own| own.thrust).map(|differ| {
             format!(
-                "{differ}, and the file gives all units one pair: if they differ, name a `[[pair]]` for each kind and write pair = \"..\" \
-                 in every `[[unit]]`"
+                "{differ}, and the file gives all of them one map: if they differ, name a `[[pair]]` or a `[[rotor]]` for each kind and \
+                 write its name in every `[[unit]]`"
             )
         }));
         notes.extend(different(name, layer, "yaw factors", |own| own.yaw).map(|differ| {
             format!(
-                "{differ}, which are not used: all units get the pair's torque, unless a `[[pair]]` is named for each kind"
+                "{differ}, which are not used: all of them get one torque, unless a `[[pair]]` or a `[[rotor]]` is named for each kind"
             )
         }));
     }

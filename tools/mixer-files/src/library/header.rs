@@ -119,12 +119,12 @@ impl Header<'_> {
         units
             .map(|(index, unit)| {
                 let [x, y, z] = unit.position_m;
-                format!(
-                    " * unit {index} at ({x:?}, {y:?}, {z:?}) m, upper rotor {}: channel {} upper, {} lower\n",
-                    unit.upper_spin.name(),
-                    unit.upper_channel,
-                    unit.lower_channel
-                )
+                let (spin, upper) = (unit.upper_spin.name(), unit.upper_channel);
+                let rotors = match unit.lower_channel {
+                    Some(lower) => format!("upper rotor {spin}: channel {upper} upper, {lower} lower"),
+                    None => format!("single rotor {spin}: channel {upper}"),
+                };
+                format!(" * unit {index} at ({x:?}, {y:?}, {z:?}) m, {rotors}\n")
             })
             .collect()
     }

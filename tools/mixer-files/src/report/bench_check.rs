@@ -17,11 +17,10 @@ pub(crate) fn bench_check(study: &Study<'_>) -> Markup {
     let units = airframe.units.iter().enumerate();
     let rotors = units.flat_map(|(index, unit)| {
         let place = checklist.place(unit);
-        let words = |rotor: &str| format!("unit {index}, {place}: {rotor} rotor");
-        [
-            (unit.upper_channel, words("upper"), unit.upper_spin),
-            (unit.lower_channel, words("lower"), unit.upper_spin.reversed()),
-        ]
+        unit.rotors().map(move |rotor| {
+            let words = format!("unit {index}, {place}: {} rotor", rotor.layer);
+            (rotor.channel, words, rotor.spin)
+        })
     });
     let mut rotors: Vec<_> = rotors.collect();
     rotors.sort_by_key(|(output, ..)| *output);

@@ -124,9 +124,11 @@ fn layout(study: &Study<'_>) -> Vec<String> {
             "{index},{},{},{},{},{}",
             line(unit.position_m),
             unit.upper_spin.name(),
-            unit.upper_spin.reversed().name(),
+            unit.lower_channel
+                .map_or("", |_| unit.upper_spin.reversed().name()),
             unit.upper_channel,
             unit.lower_channel
+                .map_or_else(String::new, |channel| channel.to_string())
         ));
     }
     lines

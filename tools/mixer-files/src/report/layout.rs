@@ -85,23 +85,32 @@ fn disk_radius(places: &[[f64; 2]]) -> f64 {
 /// drawn between them.
 fn drawn(unit: &Unit, index: usize, [x, y]: [f64; 2], radius: f64, crowded: bool) -> String {
     let gap = if crowded { 7.0 } else { 0.0 };
-    let (upper_spin, lower_spin) = (unit.upper_spin, unit.upper_spin.reversed());
+    let in_words = || {
+        let rotors = unit.rotors().map(|rotor| {
+            format!(
+                "{} rotor {} on output {}",
+                rotor.layer,
+                rotor.spin.name(),
+                rotor.channel
+            )
+        });
+        rotors.collect::<Vec<_>>().join(", ")
+    };
     let mut svg = String::new();
     let [px, py, pz] = unit.position_m;
     let _ = write!(
         svg,
-        "<g><title>unit {index}: x {} m, y {} m, z {} m; upper rotor {} on output {}, lower rotor {} on output {}</title>\
+        "<g><title>unit {index}: x {} m, y {} m, z {} m; {}</title>\
          <circle class=\"disk\" cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{radius:.1}\"/>",
         fixed(px, 4),
         fixed(py, 4),
         fixed(pz, 4),
-        upper_spin.name(),
-        unit.upper_channel,
-        lower_spin.name(),
-        unit.lower_channel
+        in_words()
     );
-    svg.push_str(&spin_arc("upper-spin", upper_spin, [x, y], radius));
-    svg.push_str(&spin_arc("lower-spin", lower_spin, [x, y], 0.78 * radius));
+    let rings = [("upper-spin", 1.0), ("lower-spin", 0.78)];
+    for (rotor, (class, share)) in unit.rotors().zip(rings) {
+        svg.push_str(&spin_arc(class, rotor.spin, [x, y], share * radius));
+    }
     let [ax, ay, _] = unit.axis;
     if tilted(unit) {
         // The horizontal part of a unit thrust, at the drawing's scale of one radius.
@@ -118,11 +127,13 @@ fn drawn(unit: &Unit, index: usize, [x, y]: [f64; 2], radius: f64, crowded: bool
     let _ = write!(
         svg,
         "<text class=\"unit\" x=\"{x:.1}\" y=\"{:.1}\">unit {index}</text>\
-         <text class=\"channel\" x=\"{x:.1}\" y=\"{:.1}\">\u{2191}{}  \u{2193}{}</text></g>",
+         <text class=\"channel\" x=\"{x:.1}\" y=\"{:.1}\">{}</text></g>",
         y - 3.0 - gap,
         y + 13.0 + gap,
-        unit.upper_channel,
-        unit.lower_channel
+        match unit.lower_channel {
+            Some(lower) => format!("\u{2191}{}  \u{2193}{lower}", unit.upper_channel),
+            None => unit.upper_channel.to_string(),
+        }
     );
     svg
 }

@@ -11,7 +11,7 @@ const VOLTAGES: usize = 41;
 pub struct Level {
     /// Total thrust, N, or voltage, V.
     pub at: f64,
-    /// Mean throttles `[upper, lower]` of all units; NaN where the thrust is not delivered.
+    /// Mean throttles of the upper and of the lower rotors, single ones among the upper; NaN where the thrust is not delivered.
     pub throttles: [f64; 2],
     /// Electrical power of all rotors at the reference voltage, W; NaN where the thrust is not
     /// delivered, or the file has no power map.
@@ -52,13 +52,17 @@ fn level(study: &Study<'_>, at: f64, thrust_n: f64, condition: &Condition) -> Le
     let airframe = &study.compiled.airframe;
     let mut channels = vec![0.0; airframe.rotors()];
     for (unit, pair) in airframe.units.iter().zip(&throttles) {
-        for (channel, throttle) in [unit.upper_channel, unit.lower_channel].into_iter().zip(pair) {
+        for (channel, throttle) in unit.channels().zip(pair) {
             if let Some(place) = channels.get_mut(channel) {
                 *place = *throttle;
             }
         }
     }
-    let mean = |rotor: usize| throttles.iter().map(|pair| pair[rotor]).sum::<f64>() / throttles.len() as f64;
+    let mean = |rotor: usize| {
+        let units = airframe.units.iter().zip(&throttles);
+        let turning = units.filter(|(unit, _)| unit.channels().nth(rotor).is_some());
+        turning.clone().map(|(_, pair)| pair[rotor]).sum::<f64>() / turning.count() as f64
+    };
     Level {
         at,
         throttles: [mean(0), mean(1)],

@@ -138,7 +138,7 @@ impl<'a> Study<'a> {
     pub fn efforts_of(&self, throttles: &[[f64; 2]]) -> Vec<[f64; 2]> {
         let airframe = &self.compiled.airframe;
         let map = |pair| PairMap::new(pair, &airframe.throttle);
-        let maps: Vec<PairMap> = airframe.pairs().map(map).collect();
+        let maps: Vec<PairMap> = airframe.kinds().map(map).collect();
         let units = airframe.units.iter().zip(throttles);
         units.map(|(unit, at)| maps[unit.pair].efforts(*at)).collect()
     }
@@ -248,12 +248,10 @@ impl<'a> Study<'a> {
         }
     }
 
-    /// Throttles `[u, l]` of every unit from those of the channels; NaN where there is no channel.
+    /// Throttles `[u, l]` of every unit from those of the channels; 0 of the lower rotor that a single one does not have.
     pub fn by_unit(&self, channels: &[f32]) -> Vec<[f64; 2]> {
-        let of = |channel: usize| channels.get(channel).map_or(f64::NAN, |&x| f64::from(x));
         let units = self.compiled.airframe.units.iter();
-        let units = units.map(|unit| [unit.upper_channel, unit.lower_channel].map(of));
-        units.collect()
+        units.map(|unit| unit.throttles(channels)).collect()
     }
 
     /// The wrench `[roll, pitch, yaw (N m), thrust (N)]` of all units' efforts.

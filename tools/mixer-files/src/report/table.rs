@@ -1,7 +1,6 @@
 //! Tables of the page: summary, units, M and M+, the static comparison, model against bench.
 
 use maud::{Markup, html};
-use mixer_compiler::airframe::Spin;
 use mixer_compiler::diagnostic::printable;
 use mixer_facts::Fact;
 
@@ -47,10 +46,11 @@ pub fn units(study: &Study<'_>) -> Markup {
     let rows: Vec<Vec<String>> = units
         .map(|(index, unit)| {
             let [x, y, z] = unit.position_m.map(|x| fixed(x, 4));
-            let rotor = |spin: Spin, channel| format!("{}, output {channel}", spin.name());
-            let upper = rotor(unit.upper_spin, unit.upper_channel);
-            let lower = rotor(unit.upper_spin.reversed(), unit.lower_channel);
-            vec![index.to_string(), x, y, z, upper, lower]
+            let rotors = unit.rotors();
+            let rotors = rotors.map(|rotor| format!("{}, output {}", rotor.spin.name(), rotor.channel));
+            let mut rotors = rotors.chain(std::iter::once("none".to_owned()));
+            let mut next = || rotors.next().unwrap_or_default();
+            vec![index.to_string(), x, y, z, next(), next()]
         })
         .collect();
     let caption = "From the centre of gravity: x forward, y right, z down";

@@ -112,10 +112,9 @@ impl Hover {
     fn new(rows: &Rows, compiled: &Compiled, mass_kg: f64) -> Hover {
         let units = &compiled.airframe.units;
         let mean = |throttle: &[f32], k: usize| {
-            let of_unit = units
-                .iter()
-                .map(|unit| [unit.upper_channel, unit.lower_channel][k]);
-            of_unit.map(|channel| f64::from(throttle[channel])).sum::<f64>() / units.len() as f64
+            let channels = units.iter().filter_map(|unit| unit.channels().nth(k));
+            let count = channels.clone().count() as f64;
+            channels.map(|channel| f64::from(throttle[channel])).sum::<f64>() / count
         };
         let straight = |number: &dyn Fn(&Row) -> f64| rows.median(|row| row.is_straight, number);
         let [upper, lower] = [0, 1].map(|k| straight(&|row| mean(&row.throttle, k)));
@@ -234,10 +233,8 @@ fn flown(rows: &Rows, compiled: &Compiled) -> Vec<(usize, [f64; 2])> {
         .collect();
     let every = (whole.len() * units.len()).div_ceil(POINTS).max(1);
     let points = whole.iter().flat_map(|row| {
-        let of = |channel: usize| f64::from(row.throttle[channel]);
-        units
-            .iter()
-            .map(move |unit| (unit.pair, [of(unit.upper_channel), of(unit.lower_channel)]))
+        let pairs = units.iter().filter(|unit| unit.lower_channel.is_some());
+        pairs.map(move |unit| (unit.pair, unit.throttles(&row.throttle)))
     });
     points.step_by(every).collect()
 }

@@ -149,10 +149,9 @@ fn same_vehicle(vehicle: &Stated, airframe: &Airframe) -> Result<(), String> {
     let arm_here = arm(&mut airframe.units.iter().map(|unit| unit.position_m));
     for rotor in rotors {
         let motor = rotor.channel + 1;
-        let unit = airframe.units.iter().find_map(|unit| match rotor.channel {
-            channel if channel == unit.upper_channel => Some((unit, unit.upper_spin)),
-            channel if channel == unit.lower_channel => Some((unit, unit.upper_spin.reversed())),
-            _ => None,
+        let unit = airframe.units.iter().find_map(|unit| {
+            let own = unit.rotors().find(|own| own.channel == rotor.channel)?;
+            Some((unit, own.spin))
         });
         let Some((unit, spin)) = unit else {
             return Err(format!(
@@ -170,8 +169,7 @@ fn same_vehicle(vehicle: &Stated, airframe: &Airframe) -> Result<(), String> {
             ));
         }
         let mate = rotors.iter().find(|other| {
-            let pair = [unit.upper_channel, unit.lower_channel];
-            other.channel != rotor.channel && pair.contains(&other.channel)
+            other.channel != rotor.channel && unit.channels().any(|channel| channel == other.channel)
         });
         let below = mate.map_or(0.0, |mate| rotor.position_m[2] - mate.position_m[2]);
         let is_upper = rotor.channel == unit.upper_channel;

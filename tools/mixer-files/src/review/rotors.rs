@@ -65,7 +65,7 @@ pub(crate) fn speeds(rows: &Rows, compiled: &Compiled) -> Vec<Speed> {
     let hover = |row: &Row| row.is_straight;
     let throttle = |output: usize| rows.median(hover, |row| f64::from(row.throttle[output]));
     let units = &compiled.airframe.units;
-    let all: Option<Vec<f32>> = (0..2 * units.len())
+    let all: Option<Vec<f32>> = (0..compiled.airframe.rotors())
         .map(|output| Some(throttle(output)? as f32))
         .collect();
     let conditions = rows.rows.iter().find(|row| hover(row)).map(|row| row.conditions);
@@ -89,10 +89,12 @@ pub(crate) fn speeds(rows: &Rows, compiled: &Compiled) -> Vec<Speed> {
         let speed = rows.median(known, |row| libm::log(row.speeds[output]))?;
         Some((output, speed - slope * libm::log(all[output].into())))
     };
-    let layer = |of: fn([usize; 2]) -> usize| {
-        let outputs = units
-            .iter()
-            .map(|unit| of([unit.upper_channel, unit.lower_channel]));
+    // Single rotors are not like those of a pair.
+    let layer = |layer: &str| {
+        let rotors = units.iter().flat_map(|unit| unit.rotors());
+        let outputs = rotors
+            .filter(|rotor| rotor.layer == layer)
+            .map(|rotor| rotor.channel);
         let speeds: Vec<(usize, f64)> = outputs.filter_map(at_one_throttle).collect();
         let against = |(output, speed): &(usize, f64)| {
             let others = speeds
@@ -109,5 +111,5 @@ pub(crate) fn speeds(rows: &Rows, compiled: &Compiled) -> Vec<Speed> {
             _ => speeds.iter().map(against).collect(),
         }
     };
-    [layer(|[upper, _]| upper), layer(|[_, lower]| lower)].concat()
+    ["upper", "lower", "single"].map(layer).concat()
 }

@@ -71,7 +71,7 @@ fn parameters(pairs: &[(&str, f64)]) -> Vec<(String, f64)> {
 fn px4_frame(compiled: &Compiled) -> Vec<(String, f64)> {
     let mut all = parameters(&[("CA_ROTOR_COUNT", 8.0), ("THR_MDL_FAC", 0.0)]);
     for unit in &compiled.airframe.units {
-        for (channel, spin) in [(unit.upper_channel, 1.0), (unit.lower_channel, -1.0)] {
+        for (channel, spin) in unit.channels().zip([1.0, -1.0]) {
             let sign = if unit.upper_spin.name() == "ccw" {
                 spin
             } else {
@@ -572,8 +572,8 @@ fn exchanged_layers_are_another_vehicle() {
     let exchanged = mixer_compiler::compile(&Source::new("x8.toml", exchanged)).unwrap();
     let mut frame = px4_frame(&compiled());
     for unit in &compiled().airframe.units {
-        frame.push((format!("CA_ROTOR{}_PZ", unit.upper_channel), -0.05));
-        frame.push((format!("CA_ROTOR{}_PZ", unit.lower_channel), 0.05));
+        let layers = unit.channels().zip([-0.05, 0.05]);
+        frame.extend(layers.map(|(channel, at)| (format!("CA_ROTOR{channel}_PZ"), at)));
     }
     for log in [
         px4_log(&compiled(), &frame),

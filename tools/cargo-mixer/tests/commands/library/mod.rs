@@ -123,12 +123,13 @@ fn rotors_that_are_out_have_an_object_of_their_own() {
         "airframes/isae-x8.toml",
         "airframes/x8-11in-least-power.toml",
         "airframes/x8-22-16in.toml",
+        "airframes/y4.toml",
         "--health",
     ];
     run(&mut library(&airframes, &folder.0));
     assert_eq!(symbols(&folder.join("libisae_x8.a")), WITH_HEALTH);
     let languages = [["gcc", "-std=c99"], ["g++", "-std=c++17"]];
-    let modules = ["isae_x8", "x8_11in_least_power", "x8_22_16in"].into_iter();
+    let modules = ["isae_x8", "x8_11in_least_power", "x8_22_16in", "y4"].into_iter();
     for (module, [driver, standard]) in
         modules.flat_map(|module| languages.map(|language| (module, language)))
     {

@@ -1,10 +1,12 @@
-//! ArduPilot's coaxial frames: the motors' table of each `FRAME_CLASS` and `FRAME_TYPE`
+//! ArduPilot's frames with coaxial pairs: the motors' table of each `FRAME_CLASS` and `FRAME_TYPE`
 //! (`AP_MotorsMatrix`).
+
+use std::f64::consts::FRAC_1_SQRT_2;
 
 use mixer_compiler::Compiled;
 use mixer_compiler::airframe::Spin;
 
-use Layer::{Lower, Upper};
+use Layer::{Lower, Single, Upper};
 use Spin::{Ccw, Cw};
 
 /// `FRAME_CLASS` of this mixer, `MOTOR_FRAME_COAXIAL_MIXER` of `examples/ardupilot`.
@@ -17,6 +19,8 @@ pub(crate) enum Layer {
     Upper,
     /// In the wake.
     Lower,
+    /// Of no pair.
+    Single,
 }
 
 /// Half the distance of two layers, m: any will do, the units lie between them.
@@ -31,6 +35,8 @@ pub(crate) struct Motor {
     pub spin: Spin,
     /// In its pair.
     pub layer: Layer,
+    /// Distance from the centre of gravity over that of the farthest motor.
+    pub reach: f64,
 }
 
 /// The name and the motors of a `FRAME_CLASS` and `FRAME_TYPE`, from motor 1 on.
@@ -55,6 +61,14 @@ pub(crate) fn motors(class: usize, kind: usize) -> Option<(&'static str, Vec<Mot
         })
         .collect::<Vec<_>>()
     };
+    // `MOTOR_FRAME_TYPE_Y4`: the rear pair is as far behind as the front rotors are ahead and to the sides.
+    if (class, kind) == (1, 19) {
+        let motor = |angle_deg, spin, layer, reach| Motor { angle_deg, spin, layer, reach };
+        return Some(("Y4", vec![
+            motor(45.0, Ccw, Single, 1.0), motor(180.0, Cw, Upper, FRAC_1_SQRT_2),
+            motor(180.0, Ccw, Lower, FRAC_1_SQRT_2), motor(-45.0, Cw, Single, 1.0),
+        ]));
+    }
     let found = match (class, kind) {
         (4, 0) => ("octaquad plus", cross(0.0, [Ccw, Cw])),
         (4, 1) => ("octaquad X", cross(45.0, [Ccw, Cw])),
@@ -78,14 +92,14 @@ pub(crate) fn motors(class: usize, kind: usize) -> Option<(&'static str, Vec<Mot
         _ => return None,
     };
     let (name, motors) = found;
-    let motor = |(angle_deg, spin, layer)| Motor { angle_deg, spin, layer };
+    let motor = |(angle_deg, spin, layer)| Motor { angle_deg, spin, layer, reach: 1.0 };
     Some((name, motors.into_iter().map(motor).collect()))
 }
 
 /// `FRAME_CLASS` and `FRAME_TYPE` of all frames that differ for a mixer, the usual ones first.
 #[rustfmt::skip]
 const FRAMES: &[(usize, usize)] = &[
-    (4, 1), (4, 0), (4, 3), (4, 12), (4, 14), (4, 18), (5, 10), (5, 1), (5, 11), (12, 1), (12, 0),
+    (4, 1), (4, 0), (4, 3), (4, 12), (4, 14), (4, 18), (5, 10), (5, 1), (5, 11), (12, 1), (12, 0), (1, 19),
 ];
 
 /// Factors that differ by less are one: a motor that is a few degrees off.
@@ -97,8 +111,16 @@ pub(crate) fn find(compiled: &Compiled) -> Option<(usize, usize, &'static str)> 
     let own = compiled.ardupilot_factors();
     let mut rotors: Vec<(usize, Spin, Layer)> = Vec::new();
     for unit in &compiled.airframe.units {
-        rotors.push((unit.upper_channel, unit.upper_spin, Upper));
-        rotors.push((unit.lower_channel, unit.upper_spin.reversed(), Lower));
+        let layers = if unit.lower_channel.is_some() {
+            [Upper, Lower]
+        } else {
+            [Single; 2]
+        };
+        rotors.extend(
+            unit.rotors()
+                .zip(layers)
+                .map(|(rotor, layer)| (rotor.channel, rotor.spin, layer)),
+        );
     }
     rotors.sort_by_key(|(channel, ..)| *channel);
     FRAMES.iter().find_map(|&(class, kind)| {
@@ -119,7 +141,7 @@ pub(crate) fn find(compiled: &Compiled) -> Option<(usize, usize, &'static str)> 
 fn factors(motors: &[Motor]) -> Vec<[f64; 2]> {
     let raw = motors.iter().map(|motor| {
         let angle = motor.angle_deg.to_radians();
-        [-libm::sin(angle), libm::cos(angle)]
+        [-libm::sin(angle), libm::cos(angle)].map(|factor| motor.reach * factor)
     });
     let raw: Vec<[f64; 2]> = raw.collect();
     let largest = [0, 1].map(|axis| {

@@ -48,7 +48,7 @@ pub(crate) fn read(parameters: &Parameters, arm: Option<f64>) -> Result<Imported
             ),
             _ => format!(
                 "{file}: {class_name} {class}, {type_name} {kind} is no frame of coaxial pairs: those are FRAME_CLASS 4 \
-                 (octaquad: types 0 to 3, 12, 14, 18), 5 (Y6) and 12 (dodecahexa: types 0, 1)"
+                 (octaquad: types 0 to 3, 12, 14, 18), 5 (Y6) and 12 (dodecahexa: types 0, 1); FRAME_CLASS 1 with type 19 (Y4) has one"
             ),
         });
     };
@@ -56,14 +56,26 @@ pub(crate) fn read(parameters: &Parameters, arm: Option<f64>) -> Result<Imported
     let rotors = motors.iter().zip(0..).map(|(motor, channel)| Rotor {
         channel,
         place: file.clone(),
-        position_m: place(arm, motor.angle_deg, motor.layer),
+        position_m: place(arm * motor.reach, motor.angle_deg, motor.layer),
         axis: UPWARD,
         spin: motor.spin,
         own: Own::NONE,
     });
+    let arms = match class {
+        1 => {
+            format!("front arms of {arm} m at 45 degrees, and the rear pair as far behind as they are ahead,")
+        }
+        _ => format!("arms of {arm} m at equal angles"),
+    };
     let mut notes = vec![format!(
-        "arms of {arm} m at equal angles are assumed, and the upper rotors of ArduPilot's table; --upper says otherwise"
+        "{arms} are assumed, and the upper rotors of ArduPilot's table; --upper says otherwise"
     )];
+    if class == 1 {
+        notes.push(
+            "ArduPilot's Y4 moves the front rotors for yaw, too, which rolls the vehicle; here they move by what their torque gives"
+                .to_owned(),
+        );
+    }
     if (class, kind) == (4, 2) {
         notes.push("ArduPilot's V gives the front rotors less yaw; the angles of its arms are not among its parameters".to_owned());
     }
@@ -100,7 +112,11 @@ fn place(arm: f64, angle_deg: f64, layer: Layer) -> [f64; 3] {
     // To a tenth of a millimetre; nobody measures an arm better.
     let rounded = |x: f64| (x * 1e4).round() / 1e4 + 0.0;
     let (sin, cos) = (libm::sin(angle), libm::cos(angle));
-    let down = if layer == Layer::Upper { -LAYER_M } else { LAYER_M };
+    let down = match layer {
+        Layer::Upper => -LAYER_M,
+        Layer::Lower => LAYER_M,
+        Layer::Single => 0.0,
+    };
     [rounded(arm * cos), rounded(arm * sin), down]
 }
 

@@ -120,7 +120,7 @@ fn geometry(compiled: &Compiled, options: &Options, all: &mut Parameters) -> Res
     }
     let Some((class, kind, name)) = frames::find(compiled) else {
         all.note(
-            "no FRAME_CLASS has these rotors on these outputs: ArduPilot has X and plus frames of 4 and 6 pairs, and Y6; of \
+            "no FRAME_CLASS has these rotors on these outputs: ArduPilot has X and plus frames of 4 and 6 pairs, Y6 and Y4; of \
              those `cargo mixer new --outputs ardupilot` writes an airframe whose `channels` and spins are one's",
         );
         return Ok(());

@@ -1,9 +1,9 @@
-//! Betaflight's frames of coaxial pairs.
+//! Betaflight's frames with coaxial pairs.
 
-/// Betaflight's coaxial tables (`mixerOctoX8`, `mixerOctoX8P`, `mixerY6`): roll, pitch, yaw; throttle is 1. The
-/// second half of the motors is under the first. The command line has `OCTOX8P` since 2025.12.
+/// Betaflight's coaxial tables (`mixerOctoX8`, `mixerOctoX8P`, `mixerY6`, `mixerY4`): roll, pitch, yaw; throttle is 1. The
+/// second half of the motors is under the first, but for the Y4. The command line has `OCTOX8P` since 2025.12.
 #[rustfmt::skip]
-pub(crate) const TABLES: [(&str, &[[f64; 3]]); 3] = [
+pub(crate) const TABLES: [(&str, &[[f64; 3]]); 4] = [
     ("OCTOX8", &[
         [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0], [1.0, 1.0, 1.0], [1.0, -1.0, -1.0],
         [-1.0, 1.0, 1.0], [-1.0, -1.0, -1.0], [1.0, 1.0, -1.0], [1.0, -1.0, 1.0],
@@ -16,4 +16,5 @@ pub(crate) const TABLES: [(&str, &[[f64; 3]]); 3] = [
         [0.0, 1.333_333, 1.0], [-1.0, -0.666_667, -1.0], [1.0, -0.666_667, -1.0],
         [0.0, 1.333_333, -1.0], [-1.0, -0.666_667, 1.0], [1.0, -0.666_667, 1.0],
     ]),
+    ("Y4", &[[0.0, 1.0, -1.0], [-1.0, -1.0, 0.0], [0.0, 1.0, 1.0], [1.0, -1.0, 0.0]]),
 ];

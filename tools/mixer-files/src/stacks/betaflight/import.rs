@@ -199,7 +199,7 @@ pub(crate) fn read(source: &Source, arm: Option<f64>) -> Result<Imported, String
         .collect();
     if places.is_empty() {
         return Err(format!(
-            "{file}: no coaxial pairs: those are `mixer OCTOX8`, `mixer OCTOX8P`, `mixer Y6`, and lines `mmix MOTOR THROTTLE ROLL PITCH \
+            "{file}: no coaxial pairs: those are `mixer OCTOX8`, `mixer OCTOX8P`, `mixer Y6`, `mixer Y4`, and lines `mmix MOTOR THROTTLE ROLL PITCH \
              YAW` with two motors in one place"
         ));
     }
@@ -217,8 +217,13 @@ pub(crate) fn read(source: &Source, arm: Option<f64>) -> Result<Imported, String
         let is_same = |other: &[f64; 2]| {
             (roll - other[0]).abs() < SAME_FACTOR && (pitch - other[1]).abs() < SAME_FACTOR
         };
-        // A rotor that is alone is told of later.
-        if *yaw == 0.0 && places.iter().filter(|place| is_same(place)).count() > 1 {
+        let is_alone = places.iter().filter(|place| is_same(place)).count() == 1;
+        if *yaw == 0.0 && is_alone {
+            notes.push(format!(
+                "the yaw of motor {channel} is 0, which leaves its spin open: as in Betaflight's Y4 a rotor on the right turns ccw, one on \
+                 the left cw; check upper_spin"
+            ));
+        } else if *yaw == 0.0 {
             return Err(format!(
                 "{place}: the yaw of motor {channel} is 0: its sign says how the rotor turns"
             ));
@@ -226,12 +231,17 @@ pub(crate) fn read(source: &Source, arm: Option<f64>) -> Result<Imported, String
         let is_lower = places[..index].iter().any(is_same);
         // To a tenth of a millimetre.
         let [x, y] = [-pitch * scales[1], -roll * scales[0]].map(|x| (x * 1e4).round() / 1e4 + 0.0);
+        let down = match (is_alone, is_lower) {
+            (true, _) => 0.0,
+            (_, true) => LAYER_M,
+            (_, false) => -LAYER_M,
+        };
         rotors.push(Rotor {
             channel: *channel,
             place: place.clone(),
-            position_m: [x, y, if is_lower { LAYER_M } else { -LAYER_M }],
+            position_m: [x, y, down],
             axis: UPWARD,
-            spin: if (*yaw > 0.0) == is_reversed {
+            spin: if (*yaw > 0.0 || *yaw == 0.0 && y > 0.0) == is_reversed {
                 Spin::Cw
             } else {
                 Spin::Ccw

@@ -1,7 +1,7 @@
 //! PX4's parameters.
 
 use mixer_compiler::Compiled;
-use mixer_compiler::airframe::{Correction, Spin};
+use mixer_compiler::airframe::{Correction, Spin, Unit};
 
 use crate::params::parameter::{Parameter, Parameters, Value, curve, hundredths, on_curve};
 use crate::params::writer::Back::{Moot, Stays, Written, WrittenOrNoted};
@@ -117,8 +117,10 @@ fn geometry(compiled: &Compiled, all: &mut Parameters) -> Result<(), String> {
         .whole("CA_ROTOR_COUNT", i32::try_from(count).unwrap_or_default());
     all.because("No rotor turns backwards.").whole("CA_R_REV", 0);
     for (channel, values) in compiled.px4_rotors().into_iter().enumerate() {
-        let is_upper = airframe.units.iter().any(|unit| unit.upper_channel == channel);
-        let layer = if is_upper { "upper" } else { "lower" };
+        let mut rotors = airframe.units.iter().flat_map(Unit::rotors);
+        let layer = rotors
+            .find(|rotor| rotor.channel == channel)
+            .map_or("", |rotor| rotor.layer);
         let spin = if values[7] > 0.0 { Spin::Ccw } else { Spin::Cw };
         let why = format!("Motor {}: {layer} rotor, turns {}.", channel + 1, spin.name());
         for (key, value) in ["PX", "PY", "PZ", "AX", "AY", "AZ", "CT", "KM"]
@@ -198,11 +200,7 @@ fn current_tangent(compiled: &Compiled) -> Option<[f64; 2]> {
     let airframe = &compiled.airframe;
     let throttle = compiled.equal_hover_throttle()?;
     let voltage_v = airframe.voltage.as_ref()?.reference;
-    let units = airframe.units.iter();
-    let most = units
-        .map(|unit| unit.upper_channel.max(unit.lower_channel))
-        .max()?
-        + 1;
+    let most = airframe.rotors();
     let current = |throttle: f64| {
         let power_w = airframe.power_w(&vec![throttle; most])?;
         Some(power_w / (airframe.rotors() as f64 * voltage_v))

@@ -1,0 +1,397 @@
+//! What the mixer misses with single rotors among the units: a bound of its passes.
+//!
+//! M+ takes kappa f for the torque of a single rotor, which is Q(f). With a the wrench that M+ is given, in newtons
+//! and newton metres over k_f, p a row of M+, B a column of M and r = k_Q / k_f, a pass is
+//!
+//! ```text
+//! a  <-  w - sum B (r Q(p a) - kappa p a)          from a = w
+//! ```
+//!
+//! over the single rotors. At its fixed point a* the efforts M+ a* of the pairs and p a*, Q(p a*) of the single rotors
+//! give w. On the way there
+//!
+//! ```text
+//! |a - a*|  <=  sum |B| max |r Q - kappa f|                               at first
+//! |a - a*|  <=  sum |B| (max |r dQ/df - kappa| |p| |a - a*| + r e)        after each pass
+//! ```
+//!
+//! A pass has one Newton step along every curve, from a throttle whose thrust is d from the one asked. Its tangent gives
+//! the torque Q(f) within e = max |d2Q/df2| d^2 / 2, its throttle the thrust within max |f''| d^2 / (2 min f'^2), both over
+//! the thrusts within d of the one asked: idle is flat, the rest is not. Thrusts beyond the range have torques along the
+//! tangent at its end, so that the bounds hold for them as well. All are enclosed over parts of the throttle range in
+//! interval arithmetic. Rounding in f32 comes on top, where the tolerances are made.
+
+use std::ops::Range;
+
+use mixer_rt::tables::PASSES;
+
+use super::effectiveness::Effectiveness;
+use super::law;
+use crate::airframe::single_rotor::torque_per_thrust;
+use crate::airframe::{Airframe, RotorAlone};
+use crate::bounds::interval::Interval;
+use crate::diagnostic::{Code, Diagnostic, number, rounded_up};
+
+/// Parts of the throttle range over which a curve is enclosed.
+const PARTS: usize = 256;
+
+/// What is missed after all passes, at the reference voltage.
+#[derive(Clone, Debug)]
+pub(crate) struct Feedback {
+    /// Of each unit's efforts at the fixed point, N and N m, beside what the inverse of a pair misses.
+    pub(crate) missed: Vec<[f64; 2]>,
+    /// Of the thrust that a single rotor is asked for last, N.
+    pub(crate) thrust_n: f64,
+}
+
+/// Bounds over a part of a curve.
+struct Part {
+    /// Least and largest thrust, N.
+    thrust_n: [f64; 2],
+    /// min f', N.
+    rise: f64,
+    /// max |f''|, N.
+    bend: f64,
+    /// max |d2Q/df2| / 2, m per N.
+    torque_bend: f64,
+    /// From the thrust of the throttle at which Newton's method begins to the one asked, N.
+    start: f64,
+}
+
+/// Bounds along a curve.
+struct Curve {
+    parts: Vec<Part>,
+    /// max |dQ/df|, m.
+    slope: f64,
+    /// max |r Q - kappa f|, N m.
+    deviation: f64,
+    /// max |r dQ/df - kappa|, m.
+    lipschitz: f64,
+    /// |p|, N per N m and N over k_f, and |B|.
+    allocation: [f64; 4],
+    effect: [f64; 4],
+}
+
+impl Curve {
+    fn new(
+        curve: &RotorAlone,
+        [low, high]: [f64; 2],
+        ratio: Interval,
+        kappa: f64,
+        [allocation, effect]: [[f64; 4]; 2],
+    ) -> Self {
+        let horner = |terms: [f64; 3], x: Interval| {
+            let of = |sum: Interval, term: f64| sum * x + Interval::exact(term);
+            terms.into_iter().fold(Interval::ZERO, of)
+        };
+        let [most, _] = curve.efforts(high);
+        let begins = |t: f64| (high * (curve.efforts(t)[0] / most).max(0.0).sqrt()).clamp(low, high);
+        let thrust = |t: f64| curve.efforts(t)[0];
+        let kappa = Interval::exact(kappa);
+        let (mut most_slope, mut deviation, mut lipschitz) = (0.0f64, 0.0f64, 0.0f64);
+        let part = |k: usize| {
+            let [from, to] = [k, k + 1].map(|k| low + (high - low) * k as f64 / PARTS as f64);
+            let x = Interval { low: from, high: to };
+            let terms = [curve.thrust_n, curve.torque_nm];
+            let [f, q] = terms.map(|[a1, a2, a3]| horner([a3, a2, a1], x) * x);
+            let [by_f, by_q] = terms.map(|[a1, a2, a3]| horner([3.0 * a3, 2.0 * a2, a1], x));
+            let [bend_f, bend_q] = terms.map(|[_, a2, a3]| horner([0.0, 6.0 * a3, 2.0 * a2], x));
+            let per_rise = Interval {
+                low: 1.0 / by_f.high,
+                high: 1.0 / by_f.low,
+            };
+            let slope = by_q * per_rise;
+            most_slope = most_slope.max(slope.magnitude());
+            deviation = deviation.max((ratio * q - kappa * f).magnitude());
+            lipschitz = lipschitz.max((ratio * slope - kappa).magnitude());
+            // Both the curve and where the method begins rise.
+            let off = [
+                thrust(begins(to)) - thrust(from),
+                thrust(to) - thrust(begins(from)),
+            ];
+            Part {
+                thrust_n: [thrust(from), thrust(to)],
+                rise: by_f.low,
+                bend: bend_f.magnitude(),
+                torque_bend: ((bend_q - slope * bend_f) * per_rise * per_rise)
+                    .half()
+                    .magnitude(),
+                start: off[0].max(off[1]),
+            }
+        };
+        let parts = (0..PARTS).map(part).collect();
+        Curve {
+            parts,
+            slope: most_slope,
+            deviation,
+            lipschitz,
+            allocation,
+            effect,
+        }
+    }
+
+    /// The parts with thrusts within `apart` N of those of a part, by index.
+    fn within(&self, part: usize, apart: f64) -> Range<usize> {
+        let [least, most] = self.parts[part].thrust_n;
+        let below = |part: &Part| part.thrust_n[1] < least - apart;
+        let up_to = |part: &Part| part.thrust_n[0] <= most + apart;
+        self.parts.partition_point(below)..self.parts.partition_point(up_to)
+    }
+
+    /// A pass: from what the throttles missed of the thrusts asked before, part by part, to what they miss of thrusts that
+    /// are `moved` N from those. Also gives the most that a torque is off.
+    fn pass(&self, missed: &[f64], moved: f64) -> (Vec<f64>, f64) {
+        let mut torque = 0.0f64;
+        let part = |k: usize| {
+            let before = &missed[self.within(k, moved)];
+            let apart = before.iter().fold(0.0, |most: f64, missed| most.max(*missed)) + moved;
+            let (mut rise, mut bend, mut torque_bend) = (f64::INFINITY, 0.0f64, 0.0f64);
+            for part in &self.parts[self.within(k, apart)] {
+                rise = rise.min(part.rise);
+                bend = bend.max(part.bend);
+                torque_bend = torque_bend.max(part.torque_bend);
+            }
+            torque = torque.max(torque_bend * apart * apart);
+            0.5 * bend * (apart / rise) * (apart / rise)
+        };
+        let missed = (0..self.parts.len()).map(part).collect();
+        (missed, torque)
+    }
+
+    /// The thrust that an error of the wrench moves, N.
+    fn moved(&self, error: &[f64; 4]) -> f64 {
+        self.allocation
+            .iter()
+            .zip(error)
+            .map(|(share, error)| share * error)
+            .sum()
+    }
+}
+
+impl Feedback {
+    /// Of an airframe with single rotors or without.
+    pub(crate) fn new(airframe: &Airframe, effectiveness: &Effectiveness) -> Feedback {
+        let n = airframe.units.len();
+        let [low, high] = law::torque_over_thrust(airframe);
+        let ratio = Interval { low, high };
+        let range = [airframe.throttle.min, airframe.throttle.max];
+        let row = |i: usize| -> [f64; 4] {
+            std::array::from_fn(|axis| effectiveness.pseudo_inverse[(i, axis)].abs())
+        };
+        let column =
+            |i: usize| -> [f64; 4] { std::array::from_fn(|axis| effectiveness.matrix[(axis, i)].abs()) };
+        let curves: Vec<Option<Curve>> = (airframe.units.iter().enumerate())
+            .map(|(i, unit)| {
+                let curve = airframe.curve_of(unit)?;
+                let kappa = torque_per_thrust(curve, &airframe.throttle);
+                Some(Curve::new(curve, range, ratio, kappa, [row(i), column(n + i)]))
+            })
+            .collect();
+        let single = || curves.iter().flatten();
+        let sum = |of: &dyn Fn(usize, &Curve) -> f64| -> [f64; 4] {
+            let mut sum = [0.0; 4];
+            for (i, curve) in single().enumerate() {
+                let size = of(i, curve);
+                for (sum, effect) in sum.iter_mut().zip(curve.effect) {
+                    *sum += effect * size;
+                }
+            }
+            sum
+        };
+        // |a - a*| before a pass and before the one before it, and what the throttles miss of the thrusts.
+        let mut error = sum(&|_, curve| curve.deviation);
+        let mut before = error;
+        let of_start = |curve: &Curve| curve.parts.iter().map(|part| part.start).collect();
+        let mut thrusts: Vec<Vec<f64>> = single().map(of_start).collect();
+        for pass in 0..PASSES {
+            let mut torques = Vec::new();
+            for (missed, curve) in thrusts.iter_mut().zip(single()) {
+                let moved = curve.moved(&error) + curve.moved(&before);
+                let torque;
+                (*missed, torque) = curve.pass(missed, if pass == 0 { 0.0 } else { moved });
+                torques.push(high * torque);
+            }
+            let next = sum(&|i, curve| curve.lipschitz * curve.moved(&error) + torques[i]);
+            (before, error) = (error, next);
+        }
+        let mut left = thrusts
+            .iter()
+            .map(|missed| missed.iter().fold(0.0, |most: f64, x| most.max(*x)));
+        let mut thrust_n = 0.0f64;
+        let missed = curves.iter().enumerate().map(|(i, curve)| {
+            let Some(curve) = curve else {
+                let of = |row: [f64; 4]| {
+                    row.iter()
+                        .zip(error)
+                        .map(|(share, error)| share * error)
+                        .sum::<f64>()
+                };
+                return [of(row(i)), of(row(n + i)) / low];
+            };
+            let own = left.next().unwrap_or_default() + curve.moved(&before);
+            thrust_n = thrust_n.max(own + curve.moved(&error));
+            [own, curve.slope * own]
+        });
+        let missed = missed.collect();
+        Feedback { missed, thrust_n }
+    }
+
+    /// What any unit may miss under all conditions, N and N m, where the inverses of pairs miss `of_pairs`.
+    pub(crate) fn with_pairs(&self, airframe: &Airframe, of_pairs: [f64; 2]) -> [f64; 2] {
+        let factors = law::largest_factors(airframe);
+        let units = airframe.units.iter().zip(&self.missed);
+        let of = |k: usize| {
+            units
+                .clone()
+                .map(move |(unit, missed)| (unit.lower_channel, factors[k] * missed[k]))
+        };
+        [0, 1].map(|k| {
+            of(k).fold(of_pairs[k], |most, (lower, missed)| match lower {
+                Some(_) => most.max(of_pairs[k] + missed),
+                None => most.max(missed),
+            })
+        })
+    }
+
+    /// Refuses single rotors whose torque the passes do not follow.
+    ///
+    /// # Errors
+    /// What is left is beyond the file's tolerance.
+    pub(crate) fn check(&self, airframe: &Airframe) -> Result<(), Vec<Diagnostic>> {
+        let inverse = &airframe.inverse;
+        let allowed = [inverse.thrust_tolerance_n, inverse.torque_tolerance_nm];
+        let factors = law::largest_factors(airframe);
+        let left = [0, 1].map(|k| {
+            let of_units = self.missed.iter().map(|missed| missed[k]);
+            factors[k] * of_units.fold(if k == 0 { self.thrust_n } else { 0.0 }, f64::max)
+        });
+        if (0..2).all(|k| left[k] <= allowed[k]) {
+            return Ok(());
+        }
+        let [f, q] = left.map(rounded_up);
+        Err(vec![airframe.diagnostic(
+            Code::Tolerance,
+            "rotor",
+            format!("the torques of the single rotors are followed within {f} N and {q} N m alone"),
+            format!("{} N and {} N m are allowed", number(allowed[0]), number(allowed[1])),
+            "their torque over thrust changes much over the throttle range: check the coefficients, raise throttle.min, or \
+             raise the tolerances of [inverse]",
+        )])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Source;
+
+    fn airframe(name: &str, exponents: [f64; 2]) -> Airframe {
+        let path = format!("{}/airframes/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+        let mut text = std::fs::read_to_string(path).unwrap();
+        for (quantity, exponent) in ["thrust", "torque"].iter().zip(exponents) {
+            let key = format!("{quantity}_exponent = ");
+            text = text.replace(&format!("{key}1.75"), &format!("{key}{exponent}"));
+        }
+        Airframe::read(&Source::new(name, text)).unwrap()
+    }
+
+    /// The throttle of a curve's thrust, by bisection.
+    fn throttle(curve: &RotorAlone, [mut low, mut high]: [f64; 2], thrust: f64) -> f64 {
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if curve.efforts(middle)[0] < thrust {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        low
+    }
+
+    /// The passes in f64 from the wrench of throttles, against the efforts of these throttles.
+    #[test]
+    fn passes_miss_no_more_than_is_bound() {
+        let mut state = 9u64;
+        let mut share = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            (state >> 11) as f64 / (1u64 << 53) as f64
+        };
+        let mut closest = 0.0f64;
+        for (name, exponents) in [
+            ("y4", [1.75, 1.75]),
+            ("hexa-stacked", [1.75, 1.75]),
+            ("hexa-stacked", [1.6, 1.9]),
+        ] {
+            let airframe = airframe(name, exponents);
+            let effectiveness = Effectiveness::new(&airframe).unwrap();
+            let bound = Feedback::new(&airframe, &effectiveness);
+            let n = airframe.units.len();
+            let range = [airframe.throttle.min, airframe.throttle.max];
+            let (row, column) = (&effectiveness.pseudo_inverse, &effectiveness.matrix);
+            let dot = |i: usize, a: &[f64; 4]| (0..4).map(|axis| row[(i, axis)] * a[axis]).sum::<f64>();
+            let singles: Vec<(usize, &RotorAlone)> = (0..n)
+                .filter_map(|i| Some((i, airframe.curve_of(&airframe.units[i])?)))
+                .collect();
+            let volts = airframe.voltage.as_ref().unwrap().range;
+            for _ in 0..2000 {
+                let factors = airframe.factors(volts[0] + share() * (volts[1] - volts[0]), 0.0);
+                let ratio = factors[1] / factors[0];
+                // A fixed point: any wrench over k_f whose thrusts are within the range of the single rotors.
+                let size = [2.0, 2.0, 0.2, 60.0];
+                let fixed: [f64; 4] = std::array::from_fn(|axis| {
+                    let part = share();
+                    size[axis] * if axis < 3 { 2.0 * part - 1.0 } else { 0.6 + part }
+                });
+                let is_within = |(i, curve): &(usize, &RotorAlone)| {
+                    let f = dot(*i, &fixed);
+                    (curve.efforts(range[0])[0]..=curve.efforts(range[1])[0]).contains(&f)
+                };
+                if !singles.iter().all(is_within) {
+                    continue;
+                }
+                let wrench: [f64; 4] = std::array::from_fn(|axis| {
+                    let off = singles.iter().map(|(i, curve)| {
+                        let torque = curve.efforts(throttle(curve, range, dot(*i, &fixed)))[1];
+                        column[(axis, n + i)] * (ratio * torque - dot(n + i, &fixed))
+                    });
+                    fixed[axis] + off.sum::<f64>()
+                });
+                let mut asked = wrench;
+                let mut throttles: Vec<f64> = Vec::new();
+                for pass in 0..PASSES {
+                    let mut next = wrench;
+                    for (k, (i, curve)) in singles.iter().enumerate() {
+                        let f = dot(*i, &asked);
+                        if pass == 0 {
+                            let share = (f / curve.efforts(range[1])[0]).clamp(0.0, 1.0);
+                            throttles.push((range[1] * share.sqrt()).clamp(range[0], range[1]));
+                        }
+                        let (given, slopes) = (curve.efforts(throttles[k]), curve.slopes(throttles[k]));
+                        let step = (f - given[0]) / slopes[0];
+                        throttles[k] = (throttles[k] + step).clamp(range[0], range[1]);
+                        let torque = given[1] + slopes[1] * step;
+                        for (axis, next) in next.iter_mut().enumerate() {
+                            *next -= column[(axis, n + i)] * (ratio * torque - dot(n + i, &asked));
+                        }
+                    }
+                    asked = next;
+                }
+                for (k, (i, curve)) in singles.iter().enumerate() {
+                    let (given, wanted) = (curve.efforts(throttles[k])[0], dot(*i, &fixed));
+                    assert!((given - wanted).abs() <= bound.missed[*i][0] + 1e-12, "{name}");
+                    assert!(
+                        (given - dot(*i, &asked)).abs() <= bound.thrust_n + 1e-12,
+                        "{name}"
+                    );
+                    closest = closest.max((given - wanted).abs() / bound.missed[*i][0]);
+                }
+                for i in (0..n).filter(|i| airframe.units[*i].lower_channel.is_some()) {
+                    let off = (dot(i, &asked) - dot(i, &fixed)).abs();
+                    assert!(off <= bound.missed[i][0] + 1e-12, "{name}");
+                }
+            }
+        }
+        // Not a bound that holds for being far off.
+        assert!(closest > 1e-3, "{closest}");
+    }
+}
