@@ -227,10 +227,14 @@ fn the_airframe_page_is_an_airframe() {
     let toml = blocks(&page)
         .into_iter()
         .filter(|(language, _)| language == "toml");
-    // `[layout]` stands in place of `[[unit]]`, and `[pair]` in place of several.
+    // `[layout]` stands in place of `[[unit]]`, and `[pair]` in place of several or of single rotors.
     let sections: Vec<String> = toml
         .map(|(_, text)| text)
-        .filter(|text| !text.starts_with("[[unit]]") && !text.starts_with("[[pair]]"))
+        .filter(|text| {
+            !["[[unit]]", "[[pair]]", "[[rotor]]"]
+                .iter()
+                .any(|other| text.starts_with(other))
+        })
         .collect();
     let text = sections.concat();
     let compiled = mixer_compiler::compile(&Source::new("airframe.md", text))

@@ -122,7 +122,7 @@ fn is_shown(row: &&Row) -> bool {
     match airframe.as_str() {
         "isae-x8" => true,
         "px4-y6" | "px4-x12" => matches!(mixer.as_str(), "coaxial" | "one-rotor-out"),
-        "roll-pitch-yaw" | "x8-16in-quartic" => mixer == "coaxial",
+        "roll-pitch-yaw" | "x8-16in-quartic" | "x8-22-16in" | "y4" | "hexa-stacked" => mixer == "coaxial",
         _ => false,
     }
 }

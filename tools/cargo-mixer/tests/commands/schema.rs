@@ -182,8 +182,8 @@ fn the_parser_agrees_key_by_key() {
             1,
         ),
         format!(
-            "name = \"single\"\n{pair}\n[[rotor]]\nname = \"single\"\nthrust_n = [1.0, 10.0, 0.0]\ntorque_nm = [0.01, 0.2, 0.0]\n{UNIT}\
-             [[unit]]\nposition_m = [-0.3, 0.0, 0.0]\nupper_spin = \"cw\"\nchannels = [2]\nrotor = \"single\"\n"
+            "name = \"single\"\n{pair}\n[[rotor]]\nname = \"single\"\nthrust_n = [1.0, 10.0, 0.0]\ntorque_nm = [0.01, 0.2, 0.0]\n\
+             [[unit]]\nposition_m = [-0.3, 0.0, 0.0]\nupper_spin = \"cw\"\nchannels = [2]\nrotor = \"single\"\n{UNIT}"
         ),
         format!(
             "name = \"four\"\n{}[layout]\narm_m = 0.45\nunits = 3\nfirst_angle_deg = 60\nfirst_spin = \"ccw\"\n",

@@ -25,6 +25,10 @@ const PER_CORRECTION: u32 = 50;
 /// The pair of a unit looked up among several.
 const PER_KIND: u32 = 35;
 
+/// All passes over single rotors, and one of these in them.
+const PER_PASSES: u32 = 175;
+const PER_SINGLE: u32 = 772;
+
 /// Requests that least norm delivers: the median over attainable ones.
 const CLOSED_FORM: Overhead = Overhead {
     per_mix: 100,
@@ -71,12 +75,22 @@ pub(super) fn attainable(compiled: &Compiled) -> Option<Estimate> {
 impl Overhead {
     fn estimate(&self, compiled: &Compiled) -> Option<Estimate> {
         let airframe = &compiled.airframe;
-        let units = airframe.units.len() as u32;
+        let single = airframe
+            .units
+            .iter()
+            .filter(|unit| unit.lower_channel.is_none())
+            .count() as u32;
+        let pairs = airframe.units.len() as u32 - single;
+        let passes = if single > 0 { PER_PASSES } else { 0 };
         let corrections = airframe.voltage.iter().chain(&airframe.air).count() as u32;
         let kind = if airframe.is_unlike() { PER_KIND } else { 0 };
         let one = compiled.evaluator.instructions(airframe.pair.basis)? + kind;
         Some(Estimate {
-            instructions: self.per_mix + units * (self.per_unit + one) + PER_CORRECTION * corrections,
+            instructions: self.per_mix
+                + pairs * (self.per_unit + one)
+                + passes
+                + single * PER_SINGLE
+                + PER_CORRECTION * corrections,
             error: self.error,
         })
     }
