@@ -99,14 +99,14 @@ class _Airframe:
         return self._native.name
 
     @property
-    def channels(self) -> list[tuple[int, int]]:
-        """Outputs of the upper and of the lower rotor of every unit."""
+    def channels(self) -> list[tuple[int, ...]]:
+        """Outputs of the upper and of the lower rotor of every unit; one of a single rotor."""
         return self._native.channels
 
     @property
     def rotors(self) -> int:
         """The number of rotors, and of outputs."""
-        return 2 * len(self._native.channels)
+        return sum(map(len, self._native.channels))
 
     def wrench(
         self,

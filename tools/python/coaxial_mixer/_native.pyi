@@ -11,7 +11,7 @@ class MixerError(ValueError):
 
 class Native:
     name: str
-    channels: list[tuple[int, int]]
+    channels: list[tuple[int, ...]]
     verdict: str
     warnings: list[str]
     rust: str

@@ -188,7 +188,7 @@ mod _native {
             array(
                 py,
                 efforts.into_iter().flatten().flatten(),
-                [n, self.rotors() / 2, 2],
+                [n, self.checked.compiled.airframe.units.len(), 2],
             )
         }
     }
