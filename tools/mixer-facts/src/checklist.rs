@@ -112,9 +112,12 @@ fn size(compiled: &Compiled, axis: Axis) -> f64 {
     compiled.effectiveness.largest(axis as usize, &scales)
 }
 
+/// Outputs of the upper and of the lower rotor of a unit; `None` of the lower one of a single rotor.
+pub type Outputs = (usize, Option<usize>);
+
 /// Every unit in words: its place, its outputs, and how its upper rotor spins, by place, spin and outputs:
 /// `front right: outputs 0 and 4 (upper cw)`, `rear: output 2 (single ccw)`.
-pub fn in_words(units: &[([f64; 3], Spin, (usize, Option<usize>))]) -> Vec<String> {
+pub fn in_words(units: &[([f64; 3], Spin, Outputs)]) -> Vec<String> {
     let places: Vec<[f64; 3]> = units.iter().map(|(place, ..)| *place).collect();
     let each = units.iter().map(|(position_m, spin, (upper, lower))| {
         let (place, spin) = (place_among(*position_m, &places), spin.name());

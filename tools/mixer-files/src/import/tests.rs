@@ -707,7 +707,7 @@ fn airframe_of(text: &str) -> (Import, Airframe) {
 
 /// What a stack's files say of a frame: outputs, spins and places; of Betaflight's factors, which have no metres and a scale
 /// of their own per axis, places over the longest.
-fn frame(airframe: &Airframe, stack: Stack) -> Vec<((usize, Option<usize>), Spin, [f64; 3])> {
+fn frame(airframe: &Airframe, stack: Stack) -> Vec<(mixer_facts::checklist::Outputs, Spin, [f64; 3])> {
     let units = || airframe.units.iter();
     let longest = |axis: usize| units().fold(1e-9, |most: f64, unit| most.max(unit.position_m[axis].abs()));
     let scales = match stack {
