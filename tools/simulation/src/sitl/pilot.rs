@@ -27,8 +27,11 @@ pub struct Stack {
     /// Thrust setpoint of a level step in roll; that of hover where there is none.
     pub level_thrust: Option<f32>,
     /// The battery's component and message, where it simulates the motors' telemetry itself and has neither of the plant.
-    pub battery: Option<(u8, fn(&World) -> MavMessage)>,
+    pub battery: Option<(u8, Message)>,
 }
+
+/// A message about the vehicle.
+pub type Message = fn(&World) -> MavMessage;
 
 /// Height of the manoeuvre, m.
 const HEIGHT_M: f64 = 5.0;
