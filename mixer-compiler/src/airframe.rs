@@ -150,7 +150,13 @@ impl Airframe {
         std::iter::once(&self.pair).chain(&self.other_pairs)
     }
 
-    /// What units are by [`Unit::pair`]: the pairs of the file, then its single rotors as pairs.
+    /// Number of units that are single rotors.
+    pub fn single_units(&self) -> usize {
+        let units = self.units.iter();
+        units.filter(|unit| unit.lower_channel.is_none()).count()
+    }
+
+    /// The pairs of the file, then its single rotors as pairs: [`Unit::pair`] counts them in this order.
     pub fn kinds(&self) -> impl Iterator<Item = &Pair> {
         self.pairs().chain(&self.single_rotors)
     }

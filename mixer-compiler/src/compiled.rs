@@ -58,7 +58,7 @@ impl Compiled {
         &self.airframe.name
     }
 
-    /// Output channels: two per unit.
+    /// Output channels: one per rotor.
     pub fn channels(&self) -> usize {
         self.airframe.rotors()
     }

@@ -209,11 +209,7 @@ fn module_lines(compiled: &Compiled) -> Vec<String> {
     lines.push(String::new());
     for (index, unit) in airframe.units.iter().enumerate() {
         let [x, y, z] = unit.position_m;
-        let (spin, upper) = (unit.upper_spin.name(), unit.upper_channel);
-        let rotors = match unit.lower_channel {
-            Some(lower) => format!("upper rotor {spin}: channel {upper} upper, {lower} lower"),
-            None => format!("single rotor {spin}: channel {upper}"),
-        };
+        let rotors = unit.in_words();
         lines.push(format!(
             " * unit {index} at ({x:?}, {y:?}, {z:?}) m, {rotors}{}",
             airframe.named_pair(unit)

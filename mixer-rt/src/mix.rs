@@ -349,9 +349,9 @@ pub trait Sealed {}
 pub trait Airframe: Sealed {
     /// The name in the airframe file.
     const NAME: &'static str;
-    /// Number of coaxial units.
+    /// Number of units, pairs and single rotors.
     const UNITS: usize;
-    /// Number of output channels, two per unit.
+    /// Number of output channels, one per rotor.
     const CHANNELS: usize;
     /// The wrench that one unit of a normalised setpoint asks for: see [`Wrench::from_normalised`].
     const SCALE: Wrench;

@@ -48,7 +48,7 @@ pub(super) struct Whose {
     pub(super) what: &'static str,
     /// The sign of its torque.
     pub(super) sign: f64,
-    /// What to do about a torque of the other sign.
+    /// Help for a torque of the other sign.
     pub(super) torque_help: &'static str,
 }
 

@@ -48,17 +48,22 @@ pub(super) fn read(table: &mut Fields<'_, '_>, throttle: Option<&Throttle>) -> O
 
 /// Torque over thrust of a single rotor at half of its largest thrust, m: what M+ takes for its share.
 pub(crate) fn torque_per_thrust(curve: &RotorAlone, throttle: &Throttle) -> f64 {
-    const HALVINGS: usize = 60;
     let [most, _] = curve.efforts(throttle.max);
+    let [f, q] = curve.efforts(throttle_of(curve, throttle, 0.5 * most));
+    q / f
+}
+
+/// The throttle of a thrust, N, by bisection within the range.
+pub(crate) fn throttle_of(curve: &RotorAlone, throttle: &Throttle, thrust_n: f64) -> f64 {
+    const HALVINGS: usize = 60;
     let [mut low, mut high] = [throttle.min, throttle.max];
     for _ in 0..HALVINGS {
         let middle = 0.5 * (low + high);
-        if curve.efforts(middle)[0] > 0.5 * most {
+        if curve.efforts(middle)[0] > thrust_n {
             high = middle;
         } else {
             low = middle;
         }
     }
-    let [f, q] = curve.efforts(low);
-    q / f
+    low
 }

@@ -92,6 +92,15 @@ impl Unit {
         self.rotors().map(|rotor| rotor.channel)
     }
 
+    /// Its rotors in words: `upper rotor cw: channel 0 upper, 4 lower`, `single rotor ccw: channel 2`.
+    pub fn in_words(&self) -> String {
+        let (spin, upper) = (self.upper_spin.name(), self.upper_channel);
+        match self.lower_channel {
+            Some(lower) => format!("upper rotor {spin}: channel {upper} upper, {lower} lower"),
+            None => format!("single rotor {spin}: channel {upper}"),
+        }
+    }
+
     /// The outputs of both rotors as `mixer-rt` has them.
     pub(crate) fn channel_table(&self) -> [u8; 2] {
         [Some(self.upper_channel), self.lower_channel]

@@ -1,4 +1,4 @@
-//! What the mixer misses with single rotors among the units: a bound of its passes.
+//! A bound of what least norm misses on a frame with single rotors, after all its passes.
 //!
 //! M+ takes kappa f for the torque of a single rotor, which is Q(f). With a the wrench that M+ is given, in newtons
 //! and newton metres over k_f, p a row of M+, B a column of M and r = k_Q / k_f, a pass is
@@ -35,7 +35,7 @@ use crate::diagnostic::{Code, Diagnostic, number, rounded_up};
 /// Parts of the throttle range over which a curve is enclosed.
 const PARTS: usize = 256;
 
-/// What is missed after all passes, at the reference voltage.
+/// Errors that are left after all passes, at the reference voltage.
 #[derive(Clone, Debug)]
 pub(crate) struct Feedback {
     /// Of each unit's efforts at the fixed point, N and N m, beside what the inverse of a pair misses.
@@ -160,12 +160,13 @@ impl Curve {
 
     /// The thrust that an error of the wrench moves, N.
     fn moved(&self, error: &[f64; 4]) -> f64 {
-        self.allocation
-            .iter()
-            .zip(error)
-            .map(|(share, error)| share * error)
-            .sum()
+        moved(&self.allocation, error)
     }
+}
+
+/// What an error of the wrench moves by a row |p| of M+.
+fn moved(row: &[f64; 4], error: &[f64; 4]) -> f64 {
+    row.iter().zip(error).map(|(share, error)| share * error).sum()
 }
 
 impl Feedback {
@@ -220,12 +221,7 @@ impl Feedback {
         let mut thrust_n = 0.0f64;
         let missed = curves.iter().enumerate().map(|(i, curve)| {
             let Some(curve) = curve else {
-                let of = |row: [f64; 4]| {
-                    row.iter()
-                        .zip(error)
-                        .map(|(share, error)| share * error)
-                        .sum::<f64>()
-                };
+                let of = |row: [f64; 4]| moved(&row, &error);
                 return [of(row(i)), of(row(n + i)) / low];
             };
             let own = left.next().unwrap_or_default() + curve.moved(&before);
@@ -236,7 +232,7 @@ impl Feedback {
         Feedback { missed, thrust_n }
     }
 
-    /// What any unit may miss under all conditions, N and N m, where the inverses of pairs miss `of_pairs`.
+    /// Largest errors of any unit under all conditions, N and N m, where those of the pairs' inverses are `of_pairs`.
     pub(crate) fn with_pairs(&self, airframe: &Airframe, of_pairs: [f64; 2]) -> [f64; 2] {
         let factors = law::largest_factors(airframe);
         let units = airframe.units.iter().zip(&self.missed);
@@ -256,7 +252,7 @@ impl Feedback {
     /// Refuses single rotors whose torque the passes do not follow.
     ///
     /// # Errors
-    /// What is left is beyond the file's tolerance.
+    /// An error beyond the file's tolerance.
     pub(crate) fn check(&self, airframe: &Airframe) -> Result<(), Vec<Diagnostic>> {
         let inverse = &airframe.inverse;
         let allowed = [inverse.thrust_tolerance_n, inverse.torque_tolerance_nm];
@@ -284,6 +280,7 @@ impl Feedback {
 mod tests {
     use super::*;
     use crate::Source;
+    use crate::airframe::single_rotor::throttle_of;
 
     fn airframe(name: &str, exponents: [f64; 2]) -> Airframe {
         let path = format!("{}/airframes/{name}.toml", env!("CARGO_MANIFEST_DIR"));
@@ -293,19 +290,6 @@ mod tests {
             text = text.replace(&format!("{key}1.75"), &format!("{key}{exponent}"));
         }
         Airframe::read(&Source::new(name, text)).unwrap()
-    }
-
-    /// The throttle of a curve's thrust, by bisection.
-    fn throttle(curve: &RotorAlone, [mut low, mut high]: [f64; 2], thrust: f64) -> f64 {
-        for _ in 0..60 {
-            let middle = 0.5 * (low + high);
-            if curve.efforts(middle)[0] < thrust {
-                low = middle;
-            } else {
-                high = middle;
-            }
-        }
-        low
     }
 
     /// The passes in f64 from the wrench of throttles, against the efforts of these throttles.
@@ -351,7 +335,8 @@ mod tests {
                 }
                 let wrench: [f64; 4] = std::array::from_fn(|axis| {
                     let off = singles.iter().map(|(i, curve)| {
-                        let torque = curve.efforts(throttle(curve, range, dot(*i, &fixed)))[1];
+                        let torque =
+                            curve.efforts(throttle_of(curve, &airframe.throttle, dot(*i, &fixed)))[1];
                         column[(axis, n + i)] * (ratio * torque - dot(n + i, &fixed))
                     });
                     fixed[axis] + off.sum::<f64>()

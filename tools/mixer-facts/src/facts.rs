@@ -158,11 +158,7 @@ fn gives(list: &mut List, compiled: &Compiled) {
         [shortest, longest] if shortest == longest => format!(", arms of {longest} m"),
         [shortest, longest] => format!(", arms of {shortest} to {longest} m"),
     };
-    let single = airframe
-        .units
-        .iter()
-        .filter(|unit| unit.lower_channel.is_none())
-        .count();
+    let single = airframe.single_units();
     let and_single = or_nothing(Some(single).filter(|single| *single > 0), |single| {
         format!(" and {single} single ones")
     });

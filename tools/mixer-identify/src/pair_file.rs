@@ -1,7 +1,7 @@
 //! A file with the model of a pair: what `identify` and `predict` write, or a whole airframe's.
 
 use mixer_compiler::diagnostic::content::{self, Content};
-use toml_edit::{DocumentMut, Item};
+use toml_edit::{DocumentMut, Item, Value};
 
 use super::fragment::POWER_BIAS;
 
@@ -73,7 +73,7 @@ impl PairFile {
         let table = self.0.get("pair")?.get(name)?;
         let list = |key| {
             let terms = table.get(key)?.as_array()?.iter();
-            let terms = terms.map(|term| term.as_float().or_else(|| Some(term.as_integer()? as f64)));
+            let terms = terms.map(number);
             <[f64; 3]>::try_from(terms.collect::<Option<Vec<f64>>>()?).ok()
         };
         Some([list("thrust_n")?, list("torque_nm")?])
@@ -116,7 +116,11 @@ fn commented_bias(line: &str) -> Option<f64> {
 }
 
 fn float(item: &Item) -> Option<f64> {
-    item.as_float().or_else(|| Some(item.as_integer()? as f64))
+    number(item.as_value()?)
+}
+
+fn number(value: &Value) -> Option<f64> {
+    value.as_float().or_else(|| Some(value.as_integer()? as f64))
 }
 
 #[cfg(test)]

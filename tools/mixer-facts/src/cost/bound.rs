@@ -89,7 +89,7 @@ pub(super) fn bound(compiled: &Compiled) -> Option<u32> {
 /// The bound with any number of rotors out, of every frame.
 pub(super) fn with_rotors_out(compiled: &Compiled) -> Option<u32> {
     let n = compiled.tables.units.len() as u32;
-    let apart = single(compiled) * SINGLE_APART;
+    let apart = compiled.airframe.single_units() as u32 * SINGLE_APART;
     let least_norm = least_norm(compiled)? + ROTORS_OUT + n * ROTORS_OUT_UNIT + apart;
     Some(least_norm + per_mix(compiled) + interior(compiled, 1))
 }
@@ -97,19 +97,16 @@ pub(super) fn with_rotors_out(compiled: &Compiled) -> Option<u32> {
 /// Least norm of all units.
 fn least_norm(compiled: &Compiled) -> Option<u32> {
     let basis = compiled.airframe.pair.basis;
-    let (n, single) = (compiled.tables.units.len() as u32, single(compiled));
+    let (n, single) = (
+        compiled.tables.units.len() as u32,
+        compiled.airframe.single_units() as u32,
+    );
     let pair = compiled.evaluator.instructions(basis)? + forward(basis) + PER_UNIT + kind(compiled);
     let passes = match single {
         0 => 0,
         _ => PASSES * (PASS + n * KIND + single * PASS_UNIT) + single * SINGLE_UNIT,
     };
     Some((n - single) * pair + passes)
-}
-
-/// How many units are single rotors.
-fn single(compiled: &Compiled) -> u32 {
-    let units = compiled.airframe.units.iter();
-    units.filter(|unit| unit.lower_channel.is_none()).count() as u32
 }
 
 /// The interior point method: all iterations, with so many slacks beside that of a reserve.

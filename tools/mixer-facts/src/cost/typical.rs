@@ -75,11 +75,7 @@ pub(super) fn attainable(compiled: &Compiled) -> Option<Estimate> {
 impl Overhead {
     fn estimate(&self, compiled: &Compiled) -> Option<Estimate> {
         let airframe = &compiled.airframe;
-        let single = airframe
-            .units
-            .iter()
-            .filter(|unit| unit.lower_channel.is_none())
-            .count() as u32;
+        let single = airframe.single_units() as u32;
         let pairs = airframe.units.len() as u32 - single;
         let passes = if single > 0 { PER_PASSES } else { 0 };
         let corrections = airframe.voltage.iter().chain(&airframe.air).count() as u32;

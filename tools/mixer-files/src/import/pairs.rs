@@ -82,7 +82,7 @@ fn too_near<'a>(rotor: &Rotor, rotors: &'a [Rotor]) -> Option<(&'a Rotor, f64)> 
     nearest.filter(|(_, apart)| *apart < OVERLAP * libm::hypot(x, y))
 }
 
-/// What single rotors are told as; none where all are in pairs.
+/// The note on single rotors; none where all are in pairs.
 pub(super) fn alone(units: &[Unit]) -> Option<String> {
     let alone = units.iter().filter(|unit| unit.channels.1.is_none());
     let alone: Vec<String> = alone.map(|unit| unit.channels.0.to_string()).collect();

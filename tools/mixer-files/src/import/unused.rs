@@ -1,4 +1,4 @@
-//! What a stack's parameters say of each rotor, and the airframe file that is made, with one pair for all, does not.
+//! Notes on settings of each rotor in a stack's parameters that the airframe file, with one pair for all, does not have.
 
 use super::rotors::{Own, Rotor, Unit};
 

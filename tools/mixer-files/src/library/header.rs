@@ -119,11 +119,7 @@ impl Header<'_> {
         units
             .map(|(index, unit)| {
                 let [x, y, z] = unit.position_m;
-                let (spin, upper) = (unit.upper_spin.name(), unit.upper_channel);
-                let rotors = match unit.lower_channel {
-                    Some(lower) => format!("upper rotor {spin}: channel {upper} upper, {lower} lower"),
-                    None => format!("single rotor {spin}: channel {upper}"),
-                };
+                let rotors = unit.in_words();
                 format!(" * unit {index} at ({x:?}, {y:?}, {z:?}) m, {rotors}\n")
             })
             .collect()
