@@ -193,7 +193,7 @@ bool AP_MotorsCoaxialMixer::check_parameters(size_t buflen, char *buffer) const
         float expected;
         float tolerance;
     } parameters[] {
-        {"SPIN_MIN", thr_lin.get_spin_min(), MIN(ISAE_X8_THROTTLE_MIN, MOST_SPIN_MIN), SAME_THROTTLE},
+        {"SPIN_MIN", thr_lin.get_spin_min(), fminf(ISAE_X8_THROTTLE_MIN, MOST_SPIN_MIN), SAME_THROTTLE},
         {"SPIN_MAX", thr_lin.get_spin_max(), ISAE_X8_THROTTLE_MAX, SAME_THROTTLE},
         {"SLEW_UP_TIME", _slew_up_time.get(), 0.0f, SAME_THROTTLE},
         {"SLEW_DN_TIME", _slew_dn_time.get(), 0.0f, SAME_THROTTLE},
