@@ -260,8 +260,12 @@ fn tables(tables: &MixerTables) -> TokenStream {
     let (closed_form, closed_form_type) = match (&closed_form_table, tables.unlike()) {
         (Some(table), _) => (Part::tokens(&table), quote!(&tables::ClosedForm<'static>)),
         (None, Some(unlike)) if has_single_rotors => {
-            let rotors = tables.single_rotors.as_slice();
-            (WithSingleRotors { unlike, rotors }.tokens(), quote!(Kinds))
+            let with_single_rotors = WithSingleRotors {
+                unlike,
+                rotors: &tables.single_rotors,
+                passes: tables.passes,
+            };
+            (with_single_rotors.tokens(), quote!(Kinds))
         }
         (None, Some(unlike)) => (unlike.tokens(), quote!(Kinds)),
         (None, None) => (quote!(tables::NoClosedForm), quote!(tables::NoClosedForm)),

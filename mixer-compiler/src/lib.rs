@@ -184,6 +184,7 @@ impl Model {
             airframes,
             effectiveness,
             corrections,
+            passes: feedback.passes,
             maps: selected.iter().map(|selected| &selected.map).collect(),
             tolerance: selection::tolerance(
                 airframe,

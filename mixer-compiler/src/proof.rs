@@ -98,7 +98,7 @@ pub(crate) fn prove(
     patience: Patience,
 ) -> Certificate {
     let inverse = &airframe.inverse;
-    let tolerance = [inverse.thrust_tolerance_n, inverse.torque_tolerance_nm];
+    let tolerance = inverse.tolerances();
     let subject = Subject::new(airframe, map, correction);
     let whole = ThrottleCell::grid([airframe.throttle.min, airframe.throttle.max], START);
     let mut cells = whole.len();

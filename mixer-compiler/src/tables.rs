@@ -14,9 +14,8 @@ mod single;
 use mixer_rt::{
     Conditions, Health, Saturation, SetpointError, Wrench,
     tables::{
-        AllocationMethod, Border, Cell, ClosedForm, ClosedFormUnit, Facets, Inverse, Kind, NO_CHANNEL,
-        PASSES, Pair, Priorities, SingleRotor, Steep, Tables, ThrottleRange, Tolerance, Unit, UnitState,
-        Unlike,
+        AllocationMethod, Border, Cell, ClosedForm, ClosedFormUnit, Facets, Inverse, Kind, NO_CHANNEL, Pair,
+        Priorities, SingleRotor, Steep, Tables, ThrottleRange, Tolerance, Unit, UnitState, Unlike,
     },
 };
 
@@ -64,6 +63,8 @@ pub struct MixerTables {
     pub kinds: Vec<Kind<QuantityTable, InverseTable>>,
     /// Thrust and torque of each kind of single rotor.
     pub single_rotors: Vec<[SingleRotor; 2]>,
+    /// Passes of least norm over them.
+    pub passes: u8,
     /// Which of these each unit is: of the pairs, then of the single rotors.
     pub kind_of: Vec<u8>,
     /// Largest errors of the mixer.
@@ -76,6 +77,7 @@ pub struct AnyMethod<'a> {
     closed_form: Option<ClosedForm<'a>>,
     unlike: Option<Unlike<'a, QuantityTable, InverseTable>>,
     single_rotors: &'a [[SingleRotor; 2]],
+    passes: u8,
 }
 
 impl AllocationMethod<QuantityTable> for AnyMethod<'_> {
@@ -93,6 +95,10 @@ impl AllocationMethod<QuantityTable> for AnyMethod<'_> {
 
     fn single_rotors(&self) -> &[[SingleRotor; 2]] {
         self.single_rotors
+    }
+
+    fn passes(&self) -> u8 {
+        self.passes
     }
 }
 
@@ -135,6 +141,8 @@ pub(crate) struct Parts<'a> {
     pub(crate) corrections: &'a CorrectionTables,
     /// The map of each pair and its inverse.
     pub(crate) maps: Vec<&'a UnitMap>,
+    /// Passes of least norm over single rotors.
+    pub(crate) passes: u8,
     /// What the mixer may miss.
     pub(crate) tolerance: Tolerance,
 }
@@ -225,6 +233,7 @@ impl MixerTables {
                     .filter_map(|rotor| rotor.lower_out.as_ref());
                 curves.map(|curve| [curve_table(curve); 2]).collect()
             },
+            passes: parts.passes,
             tolerance: parts.tolerance,
         }
     }
@@ -259,6 +268,7 @@ impl MixerTables {
                 closed_form: self.closed_form.as_ref().map(ClosedFormTable::view),
                 unlike: self.unlike(),
                 single_rotors: &self.single_rotors,
+                passes: self.passes,
             },
             tolerance: self.tolerance,
         }
@@ -354,7 +364,7 @@ impl MixerTables {
         };
         // The wrench less what the torques of single rotors differ from their share in M+ by.
         let mut asked = wrench;
-        for _ in 0..PASSES {
+        for _ in 0..self.passes {
             let mut next = wrench;
             for (index, unit) in self.units.iter().enumerate() {
                 let Some(curve) = view.curve_of(index) else {
@@ -382,7 +392,8 @@ impl MixerTables {
     /// Bytes of the tables in flash.
     pub fn bytes(&self) -> usize {
         let view = self.view();
-        let parts: [&dyn Part; 16] = [
+        let passes = (!self.single_rotors.is_empty()).then_some(self.passes);
+        let parts: [&dyn Part; 17] = [
             &view.units,
             &view.pair,
             &view.singles,
@@ -398,6 +409,7 @@ impl MixerTables {
             &view.closed_form.closed_form,
             &view.closed_form.unlike,
             &view.closed_form.single_rotors,
+            &passes,
             &view.tolerance,
         ];
         parts.into_iter().map(Part::bytes).sum()

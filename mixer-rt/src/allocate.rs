@@ -13,7 +13,8 @@
 //! alone in its unit turns the vehicle one way.
 //!
 //! With airmode `disabled` no priority raises the thrust above the request, or above what level flight
-//! needs.
+//! needs. Costs say so: where units differ, thrust may rise by a share of its authority where that frees five times the share
+//! of roll and pitch.
 //!
 //! Where least norm gives the request, that is the answer; what cannot be given has two methods:
 //!

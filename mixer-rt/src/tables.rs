@@ -11,7 +11,6 @@ pub use crate::allocate::closed_form::{
     Steep,
 };
 pub use crate::allocate::interior::MOST_ITERATIONS;
-pub use crate::allocate::least_norm::PASSES;
 pub use crate::allocate::priorities::{Airmode, Priorities, REQUEST_LIMIT};
 pub use crate::allocate::unit::UnitState;
 pub use crate::arithmetic::{Scalar, sqrt};

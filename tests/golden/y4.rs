@@ -331,6 +331,7 @@ pub mod y4 {
                 },
             ],
         ],
+        passes: 2,
     };
     /// All tables; see `mixer_rt::tables` for their meaning and units.
     #[doc(hidden)]
@@ -362,7 +363,7 @@ pub mod y4 {
         closed_form: CLOSED_FORM,
         tolerance: tables::Tolerance {
             efforts: [0.0037430986, 0.000073708165],
-            wrench: [0.0000831312, 0.0014111889, 0.000101591504, 0.005226625],
+            wrench: [0.0000843749, 0.0014122382, 0.00010172734, 0.005230512],
         },
     };
 }

@@ -133,7 +133,7 @@ impl Soak {
         let failures = self.add(visit);
         for out in [1, 2] {
             for _ in 0..HEALTHS {
-                let health = draw_health(&mut random, 2 * frame.physics.units(), out);
+                let health = draw_health(&mut random, frame.compiled.tables.channels(), out);
                 let mut visit = Visit::new(specimen, index, out);
                 if !is_level_attainable(frame, health)? {
                     continue;

@@ -15,6 +15,10 @@ const ROUNDING: f64 = 1e-5;
 /// may miss.
 pub const SLACK: f64 = 3e-3;
 
+/// Cost of roll and pitch over that of thrust in excess, `priorities` of the runtime. Where units differ they need unequal
+/// thrusts to be level, and a little thrust may free more roll and pitch than that.
+const EXCESS_PER_TORQUE: f64 = 400.0 / 2000.0;
+
 /// What is wrong with an answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FaultKind {
@@ -228,7 +232,13 @@ fn overstepping(frame: &Frame, request: &Request, answer: &Answer) -> Result<Vec
         return Ok(Vec::new());
     }
     let given = answer.achieved[3];
-    let is_above = |floor: f64| given > floor + ALLOWED * frame.authority[3];
+    let freed = if frame.compiled.airframe.is_unlike() {
+        let share = |axis: usize| answer.achieved[axis] / frame.size(axis);
+        EXCESS_PER_TORQUE * share(0).hypot(share(1))
+    } else {
+        0.0
+    };
+    let is_above = |floor: f64| given > floor + (ALLOWED + freed) * frame.authority[3];
     if raised && is_above(floor) {
         // Convex hulls reach below the least thrust. The mixer's is that of level flight without
         // yaw, which less thrust may come with where units at idle have a torque.

@@ -51,6 +51,13 @@ pub struct Inverse {
     pub method: Method,
 }
 
+impl Inverse {
+    /// Largest errors of thrust, N, and torque, N m.
+    pub(crate) fn tolerances(&self) -> [f64; 2] {
+        [self.thrust_tolerance_n, self.torque_tolerance_nm]
+    }
+}
+
 impl Default for Inverse {
     fn default() -> Self {
         Self {

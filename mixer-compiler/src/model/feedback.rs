@@ -15,15 +15,14 @@
 //! |a - a*|  <=  sum |B| (max |r dQ/df - kappa| |p| |a - a*| + r e)        after each pass
 //! ```
 //!
-//! A pass has one Newton step along every curve, from a throttle whose thrust is d from the one asked. Its tangent gives
-//! the torque Q(f) within e = max |d2Q/df2| d^2 / 2, its throttle the thrust within max |f''| d^2 / (2 min f'^2), both over
-//! the thrusts within d of the one asked: idle is flat, the rest is not. Thrusts beyond the range have torques along the
-//! tangent at its end, so that the bounds hold for them as well. All are enclosed over parts of the throttle range in
-//! interval arithmetic. Rounding in f32 comes on top, where the tolerances are made.
-
-use std::ops::Range;
-
-use mixer_rt::tables::PASSES;
+//! A pass moves the throttle t of every single rotor by the step d to where the parabola of its thrust f at t has the
+//! thrust asked, and takes that of its torque there. f and Q are cubics, so that these differ by a3 d^3 and b3 d^3. A
+//! parabola without the thrust asked, which lies `off` from f(t), is followed to d = 2 off / f', which misses
+//! |off| (-1 - 4 off f'' / 2 f'^2) more. What the parabola lacks of the thrust, also by the ends of the range, has torque in
+//! proportion to it by the slope dQ/df at t. So d is at most the greatest distance of two throttles whose thrusts are as far
+//! apart as those before and after the step. All bounds are enclosed over parts of the throttle range in interval
+//! arithmetic. A frame has as many passes as its file's tolerances need. Rounding in f32 comes on top, where the tolerances
+//! are made.
 
 use super::effectiveness::Effectiveness;
 use super::law;
@@ -35,9 +34,14 @@ use crate::diagnostic::{Code, Diagnostic, number, rounded_up};
 /// Parts of the throttle range over which a curve is enclosed.
 const PARTS: usize = 256;
 
+/// Most passes that a frame may have.
+const MOST_PASSES: u8 = 8;
+
 /// Errors that are left after all passes, at the reference voltage.
 #[derive(Clone, Debug)]
 pub(crate) struct Feedback {
+    /// Passes over the single rotors.
+    pub(crate) passes: u8,
     /// Of each unit's efforts at the fixed point, N and N m, beside what the inverse of a pair misses.
     pub(crate) missed: Vec<[f64; 2]>,
     /// Of the thrust that a single rotor is asked for last, N.
@@ -50,19 +54,21 @@ struct Part {
     thrust_n: [f64; 2],
     /// min f', N.
     rise: f64,
-    /// max |f''|, N.
-    bend: f64,
-    /// max |d2Q/df2| / 2, m per N.
-    torque_bend: f64,
-    /// From the thrust of the throttle at which Newton's method begins to the one asked, N.
-    start: f64,
+    /// f'' / 2, N.
+    half: Interval,
 }
 
 /// Bounds along a curve.
 struct Curve {
     parts: Vec<Part>,
-    /// max |dQ/df|, m.
-    slope: f64,
+    /// Of a part, 1.
+    width: f64,
+    /// From the thrust at which the first pass begins to the one asked, N.
+    start: f64,
+    /// |a3|, N, and max |a3 dQ/df - b3|, N m.
+    remainder: [f64; 2],
+    /// dQ/df, m.
+    slope: Interval,
     /// max |r Q - kappa f|, N m.
     deviation: f64,
     /// max |r dQ/df - kappa|, m.
@@ -84,78 +90,100 @@ impl Curve {
             let of = |sum: Interval, term: f64| sum * x + Interval::exact(term);
             terms.into_iter().fold(Interval::ZERO, of)
         };
-        let [most, _] = curve.efforts(high);
-        let begins = |t: f64| (high * (curve.efforts(t)[0] / most).max(0.0).sqrt()).clamp(low, high);
         let thrust = |t: f64| curve.efforts(t)[0];
+        let begins = |t: f64| (high * (thrust(t) / thrust(high)).max(0.0).sqrt()).clamp(low, high);
         let kappa = Interval::exact(kappa);
-        let (mut most_slope, mut deviation, mut lipschitz) = (0.0f64, 0.0f64, 0.0f64);
+        let (mut start, mut deviation) = (0.0f64, 0.0f64);
+        let mut slope = Interval {
+            low: f64::INFINITY,
+            high: f64::NEG_INFINITY,
+        };
+        let width = (high - low) / PARTS as f64;
         let part = |k: usize| {
-            let [from, to] = [k, k + 1].map(|k| low + (high - low) * k as f64 / PARTS as f64);
+            let [from, to] = [k, k + 1].map(|k| low + width * k as f64);
             let x = Interval { low: from, high: to };
             let terms = [curve.thrust_n, curve.torque_nm];
             let [f, q] = terms.map(|[a1, a2, a3]| horner([a3, a2, a1], x) * x);
-            let [by_f, by_q] = terms.map(|[a1, a2, a3]| horner([3.0 * a3, 2.0 * a2, a1], x));
-            let [bend_f, bend_q] = terms.map(|[_, a2, a3]| horner([0.0, 6.0 * a3, 2.0 * a2], x));
-            let per_rise = Interval {
-                low: 1.0 / by_f.high,
-                high: 1.0 / by_f.low,
-            };
-            let slope = by_q * per_rise;
-            most_slope = most_slope.max(slope.magnitude());
+            let [by_f, by_q] = [0, 1].map(|k| {
+                let [from, to] = [from, to].map(|t| curve.slopes(t)[k]);
+                let bend =
+                    Interval { low: -1.0, high: 1.0 } * Interval::exact(0.75 * terms[k][2] * width * width);
+                Interval {
+                    low: from.min(to),
+                    high: from.max(to),
+                } + bend
+            });
+            let own = by_q
+                * Interval {
+                    low: 1.0 / by_f.high,
+                    high: 1.0 / by_f.low,
+                };
+            slope.low = slope.low.min(own.low);
+            slope.high = slope.high.max(own.high);
             deviation = deviation.max((ratio * q - kappa * f).magnitude());
-            lipschitz = lipschitz.max((ratio * slope - kappa).magnitude());
-            // Both the curve and where the method begins rise.
-            let off = [
-                thrust(begins(to)) - thrust(from),
-                thrust(to) - thrust(begins(from)),
-            ];
+            // Both the curve and where the first pass begins rise.
+            start = start
+                .max(thrust(begins(to)) - thrust(from))
+                .max(thrust(to) - thrust(begins(from)));
+            let [_, a2, a3] = curve.thrust_n;
             Part {
                 thrust_n: [thrust(from), thrust(to)],
                 rise: by_f.low,
-                bend: bend_f.magnitude(),
-                torque_bend: ((bend_q - slope * bend_f) * per_rise * per_rise)
-                    .half()
-                    .magnitude(),
-                start: off[0].max(off[1]),
+                half: horner([0.0, 3.0 * a3, a2], x),
             }
         };
         let parts = (0..PARTS).map(part).collect();
+        let [a3, b3] = [curve.thrust_n[2], curve.torque_nm[2]];
         Curve {
             parts,
-            slope: most_slope,
+            width,
+            start,
+            remainder: [
+                a3.abs(),
+                (Interval::exact(a3) * slope - Interval::exact(b3)).magnitude(),
+            ],
+            slope,
             deviation,
-            lipschitz,
+            lipschitz: (ratio * slope - kappa).magnitude(),
             allocation,
             effect,
         }
     }
 
-    /// The parts with thrusts within `apart` N of those of a part, by index.
-    fn within(&self, part: usize, apart: f64) -> Range<usize> {
-        let [least, most] = self.parts[part].thrust_n;
-        let below = |part: &Part| part.thrust_n[1] < least - apart;
-        let up_to = |part: &Part| part.thrust_n[0] <= most + apart;
-        self.parts.partition_point(below)..self.parts.partition_point(up_to)
+    /// The most that two throttles are apart whose thrusts are `thrust_n` apart.
+    fn apart(&self, thrust_n: f64) -> f64 {
+        let last = |part: &Part| {
+            let most = part.thrust_n[1] + thrust_n;
+            self.parts.partition_point(|part| part.thrust_n[0] <= most)
+        };
+        let count = self.parts.iter().enumerate().map(|(k, part)| last(part) - k);
+        count.max().unwrap_or(0) as f64 * self.width
     }
 
-    /// A pass: from what the throttles missed of the thrusts asked before, part by part, to what they miss of thrusts that
-    /// are `moved` N from those. Also gives the most that a torque is off.
-    fn pass(&self, missed: &[f64], moved: f64) -> (Vec<f64>, f64) {
-        let mut torque = 0.0f64;
-        let part = |k: usize| {
-            let before = &missed[self.within(k, moved)];
-            let apart = before.iter().fold(0.0, |most: f64, missed| most.max(*missed)) + moved;
-            let (mut rise, mut bend, mut torque_bend) = (f64::INFINITY, 0.0f64, 0.0f64);
-            for part in &self.parts[self.within(k, apart)] {
-                rise = rise.min(part.rise);
-                bend = bend.max(part.bend);
-                torque_bend = torque_bend.max(part.torque_bend);
+    /// A step from thrusts that are at most `off` N from the ones asked, or from the nearest ones: what is missed of these,
+    /// N, and of their torques, N m.
+    fn step(&self, off: f64) -> [f64; 2] {
+        let (mut short, ends) = (0.0f64, [0, PARTS - 1].map(|k| self.parts[k].thrust_n));
+        for part in &self.parts {
+            let off = Interval {
+                low: (-off).max(ends[0][0] - part.thrust_n[1]),
+                high: off.min(ends[1][1] - part.thrust_n[0]),
+            };
+            let share = -1.0 - 4.0 * (part.half * off).low / (part.rise * part.rise);
+            short = short.max(off.magnitude() * share);
+        }
+        let [of_thrust, of_torque] = self.remainder;
+        let missed = |step: f64| short + of_thrust * step.powi(3);
+        let mut step = 0.0;
+        loop {
+            let next = self.apart(off + missed(step));
+            if next <= step {
+                break;
             }
-            torque = torque.max(torque_bend * apart * apart);
-            0.5 * bend * (apart / rise) * (apart / rise)
-        };
-        let missed = (0..self.parts.len()).map(part).collect();
-        (missed, torque)
+            step = next;
+        }
+        let spread = self.slope.high - self.slope.low;
+        [missed(step), of_torque * step.powi(3) + spread * missed(step)]
     }
 
     /// The thrust that an error of the wrench moves, N.
@@ -202,34 +230,41 @@ impl Feedback {
         // |a - a*| before a pass and before the one before it, and what the throttles miss of the thrusts.
         let mut error = sum(&|_, curve| curve.deviation);
         let mut before = error;
-        let of_start = |curve: &Curve| curve.parts.iter().map(|part| part.start).collect();
-        let mut thrusts: Vec<Vec<f64>> = single().map(of_start).collect();
-        for pass in 0..PASSES {
+        let mut thrusts: Vec<f64> = single().map(|curve| curve.start).collect();
+        let mut passes = 0;
+        loop {
             let mut torques = Vec::new();
             for (missed, curve) in thrusts.iter_mut().zip(single()) {
-                let moved = curve.moved(&error) + curve.moved(&before);
+                if passes > 0 {
+                    *missed += curve.moved(&error) + curve.moved(&before);
+                }
                 let torque;
-                (*missed, torque) = curve.pass(missed, if pass == 0 { 0.0 } else { moved });
+                [*missed, torque] = curve.step(*missed);
                 torques.push(high * torque);
             }
             let next = sum(&|i, curve| curve.lipschitz * curve.moved(&error) + torques[i]);
             (before, error) = (error, next);
-        }
-        let mut left = thrusts
-            .iter()
-            .map(|missed| missed.iter().fold(0.0, |most: f64, x| most.max(*x)));
-        let mut thrust_n = 0.0f64;
-        let missed = curves.iter().enumerate().map(|(i, curve)| {
-            let Some(curve) = curve else {
-                let of = |row: [f64; 4]| moved(&row, &error);
-                return [of(row(i)), of(row(n + i)) / low];
+            passes += 1;
+            let mut left = thrusts.iter();
+            let mut thrust_n = 0.0f64;
+            let missed = curves.iter().enumerate().map(|(i, curve)| {
+                let Some(curve) = curve else {
+                    let of = |row: [f64; 4]| moved(&row, &error);
+                    return [of(row(i)), of(row(n + i)) / low];
+                };
+                let own = left.next().copied().unwrap_or_default() + curve.moved(&before);
+                thrust_n = thrust_n.max(own + curve.moved(&error));
+                [own, curve.slope.magnitude() * own]
+            });
+            let feedback = Feedback {
+                passes,
+                missed: missed.collect(),
+                thrust_n,
             };
-            let own = left.next().unwrap_or_default() + curve.moved(&before);
-            thrust_n = thrust_n.max(own + curve.moved(&error));
-            [own, curve.slope * own]
-        });
-        let missed = missed.collect();
-        Feedback { missed, thrust_n }
+            if passes == MOST_PASSES || feedback.excess(airframe).is_none() {
+                return feedback;
+            }
+        }
     }
 
     /// Largest errors of any unit under all conditions, N and N m, where those of the pairs' inverses are `of_pairs`.
@@ -249,21 +284,26 @@ impl Feedback {
         })
     }
 
-    /// Refuses single rotors whose torque the passes do not follow.
-    ///
-    /// # Errors
-    /// An error beyond the file's tolerance.
-    pub(crate) fn check(&self, airframe: &Airframe) -> Result<(), Vec<Diagnostic>> {
-        let inverse = &airframe.inverse;
-        let allowed = [inverse.thrust_tolerance_n, inverse.torque_tolerance_nm];
+    /// Largest errors of any unit under all conditions, N and N m, where they are beyond the file's tolerances.
+    fn excess(&self, airframe: &Airframe) -> Option<[f64; 2]> {
+        let allowed = airframe.inverse.tolerances();
         let factors = law::largest_factors(airframe);
         let left = [0, 1].map(|k| {
             let of_units = self.missed.iter().map(|missed| missed[k]);
             factors[k] * of_units.fold(if k == 0 { self.thrust_n } else { 0.0 }, f64::max)
         });
-        if (0..2).all(|k| left[k] <= allowed[k]) {
+        (0..2).any(|k| left[k] > allowed[k]).then_some(left)
+    }
+
+    /// Refuses single rotors whose torque the passes do not follow.
+    ///
+    /// # Errors
+    /// An error beyond the file's tolerance.
+    pub(crate) fn check(&self, airframe: &Airframe) -> Result<(), Vec<Diagnostic>> {
+        let Some(left) = self.excess(airframe) else {
             return Ok(());
-        }
+        };
+        let allowed = airframe.inverse.tolerances();
         let [f, q] = left.map(rounded_up);
         Err(vec![airframe.diagnostic(
             Code::Tolerance,
@@ -343,7 +383,7 @@ mod tests {
                 });
                 let mut asked = wrench;
                 let mut throttles: Vec<f64> = Vec::new();
-                for pass in 0..PASSES {
+                for pass in 0..bound.passes {
                     let mut next = wrench;
                     for (k, (i, curve)) in singles.iter().enumerate() {
                         let f = dot(*i, &asked);
@@ -351,10 +391,18 @@ mod tests {
                             let share = (f / curve.efforts(range[1])[0]).clamp(0.0, 1.0);
                             throttles.push((range[1] * share.sqrt()).clamp(range[0], range[1]));
                         }
-                        let (given, slopes) = (curve.efforts(throttles[k]), curve.slopes(throttles[k]));
-                        let step = (f - given[0]) / slopes[0];
-                        throttles[k] = (throttles[k] + step).clamp(range[0], range[1]);
-                        let torque = given[1] + slopes[1] * step;
+                        let at = throttles[k];
+                        let (given, slopes) = (curve.efforts(at), curve.slopes(at));
+                        let half = [curve.thrust_n, curve.torque_nm].map(|[_, a2, a3]| a2 + 3.0 * a3 * at);
+                        let root = (slopes[0] * slopes[0] + 4.0 * half[0] * (f - given[0]))
+                            .max(0.0)
+                            .sqrt();
+                        throttles[k] =
+                            (at + 2.0 * (f - given[0]) / (slopes[0] + root)).clamp(range[0], range[1]);
+                        let step = throttles[k] - at;
+                        let [reached, torque] =
+                            [0, 1].map(|k| given[k] + (half[k] * step + slopes[k]) * step);
+                        let torque = torque + slopes[1] / slopes[0] * (f - reached);
                         for (axis, next) in next.iter_mut().enumerate() {
                             *next -= column[(axis, n + i)] * (ratio * torque - dot(n + i, &asked));
                         }

@@ -28,7 +28,7 @@ impl CorrectionBounds {
     /// where efforts are largest.
     pub(crate) fn tolerance_at_reference(&self, airframe: &Airframe) -> [f64; 2] {
         let inverse = &airframe.inverse;
-        let stated = [inverse.thrust_tolerance_n, inverse.torque_tolerance_nm];
+        let stated = inverse.tolerances();
         [0, 1].map(|k| stated[k] / self.largest[k])
     }
 

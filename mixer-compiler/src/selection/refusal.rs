@@ -14,7 +14,7 @@ const NEAR_FOLD: f64 = 1.1;
 pub(super) fn tolerance(airframe: &Airframe, evaluator: Evaluator, certificate: &Certificate) -> Diagnostic {
     let inverse = &airframe.inverse;
     let reached = certificate.stated;
-    let stated = [inverse.thrust_tolerance_n, inverse.torque_tolerance_nm];
+    let stated = inverse.tolerances();
     let least = EnclosedPairMap::new(&airframe.pair).least_idle(airframe.throttle.max);
     let idle = least
         .filter(|least| airframe.throttle.min < NEAR_FOLD * least)

@@ -106,7 +106,7 @@ parts! {
     SingleRotor { thrust, torque };
     Kind<QuantityTable, InverseTable> { pair, singles, inverse, mean_square_slopes };
     Unlike<'_, QuantityTable, InverseTable> { kinds, of };
-    WithSingleRotors<'_, QuantityTable, InverseTable> { unlike, rotors };
+    WithSingleRotors<'_, QuantityTable, InverseTable> { unlike, rotors, passes };
     ThrottleRange { min, max };
     Law<'_> { reference, range, pieces };
     LawPiece { start, thrust, torque };

@@ -135,6 +135,12 @@ pub trait AllocationMethod<P> {
     fn single_rotors(&self) -> &[[SingleRotor; 2]] {
         &[]
     }
+
+    /// Passes of least norm over them.
+    #[inline(always)]
+    fn passes(&self) -> u8 {
+        0
+    }
 }
 
 /// An inverse that no airframe has.
@@ -172,6 +178,11 @@ impl<P, I: Inverse> AllocationMethod<P> for WithSingleRotors<'_, P, I> {
     #[inline(always)]
     fn single_rotors(&self) -> &[[SingleRotor; 2]] {
         self.rotors
+    }
+
+    #[inline(always)]
+    fn passes(&self) -> u8 {
+        self.passes
     }
 }
 

@@ -2,8 +2,8 @@
 //!
 //! M+ has a single rotor's torque in proportion to its thrust, which it is not quite. What it differs by is taken
 //! from the wrench, which moves the thrusts, and so on: the differences fall by a constant factor, of some hundredths,
-//! from one pass to the next. Each pass has one Newton step along every single rotor's curve. The compiler bounds what is
-//! left after [`PASSES`].
+//! from one pass to the next. Each pass has one step along every single rotor's curve. The compiler bounds what is
+//! left, and gives a frame as many passes as its tolerances need.
 
 use core::mem::replace;
 
@@ -14,9 +14,6 @@ use crate::clamp;
 use crate::layout::Unit;
 use crate::pair::{Inverse, Quantity};
 use crate::rolled;
-
-/// Passes over the single rotors.
-pub const PASSES: u32 = 4;
 
 impl<P: Quantity, I: Inverse, S: AllocationMethod<P>, const VERTICAL: bool> Frame<'_, '_, P, I, S, VERTICAL> {
     /// Efforts of least norm of a unit for a wrench (N m, N), at the reference voltage.
@@ -42,7 +39,7 @@ impl<P: Quantity, I: Inverse, S: AllocationMethod<P>, const VERTICAL: bool> Fram
     fn serve_with_single_rotors(&self, wrench: &[f32; 4], units: &mut [UnitState]) -> bool {
         let (tables, range) = (self.tables, &self.tables.throttle);
         let mut asked = *wrench;
-        for pass in rolled(0..PASSES) {
+        for pass in rolled(0..tables.closed_form.passes()) {
             let mut next = *wrench;
             for (index, (state, unit)) in rolled(units.iter_mut().zip(tables.units).enumerate()) {
                 let Some(curve) = tables.curve_of(index) else {
@@ -54,7 +51,7 @@ impl<P: Quantity, I: Inverse, S: AllocationMethod<P>, const VERTICAL: bool> Fram
                 } else {
                     state.throttles[0]
                 };
-                let [throttle, torque] = curve.step(range, from, f);
+                let [throttle, torque] = curve.parabola(range, from, f);
                 state.throttles = [throttle, 0.0];
                 unit.add_wrench([0.0, q - torque], self.factors, &mut next);
             }

@@ -32,4 +32,6 @@ pub struct WithSingleRotors<'a, P, I> {
     pub unlike: Unlike<'a, P, I>,
     /// Thrust and torque of each kind of single rotor, twice: a unit has a row for its upper and for its lower rotor.
     pub rotors: &'a [[SingleRotor; 2]],
+    /// Passes of least norm over them.
+    pub passes: u8,
 }

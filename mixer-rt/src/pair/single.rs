@@ -50,13 +50,18 @@ impl SingleRotor {
         range.clamp(range.max * sqrt(share))
     }
 
-    /// A Newton step from a throttle towards a thrust (N), within the range, and the torque (N m) of that thrust along the
-    /// tangent, also beyond the range.
+    /// The throttle, within the range, at which the parabola of the thrust at `throttle` has a thrust (N), and the torque
+    /// (N m) there by its parabola. Thrust that is missing then has torque by the slope dQ/df at `throttle`.
     #[inline(always)]
-    pub(crate) fn step(&self, range: &ThrottleRange, throttle: f32, thrust: f32) -> [f32; 2] {
-        let [[f, q], [by_f, by_q], _] = self.expansion(throttle);
-        let step = divided(thrust - f, larger(by_f, LEAST_RISE));
-        [range.clamp(throttle + step), q + by_q * step]
+    pub(crate) fn parabola(&self, range: &ThrottleRange, throttle: f32, thrust: f32) -> [f32; 2] {
+        let [[f, q], [by_f, by_q], [half_f, half_q]] = self.expansion(throttle);
+        let off = thrust - f;
+        let root = sqrt(larger(by_f * by_f + 4.0 * half_f * off, 0.0));
+        let next = range.clamp(throttle + divided(2.0 * off, larger(by_f + root, LEAST_RISE)));
+        let step = next - throttle;
+        let missing = off - (half_f * step + by_f) * step;
+        let slope = divided(by_q, larger(by_f, LEAST_RISE));
+        [next, q + (half_q * step + by_q) * step + slope * missing]
     }
 
     /// The throttle of a thrust (N), or the nearest one of the range.
@@ -64,7 +69,8 @@ impl SingleRotor {
     pub fn throttle(&self, range: &ThrottleRange, thrust: f32) -> f32 {
         let mut throttle = self.start(range, thrust);
         for _ in rolled(0..STEPS) {
-            [throttle, _] = self.step(range, throttle, thrust);
+            let [[f, _], [slope, _], _] = self.expansion(throttle);
+            throttle = range.clamp(throttle + divided(thrust - f, larger(slope, LEAST_RISE)));
         }
         throttle
     }

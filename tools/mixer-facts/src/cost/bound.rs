@@ -6,7 +6,7 @@
 //! the iterations of the interior point method: a product of their largest number and the
 //! cost of one (`cargo counts`). The tests hold the sum to the counts of whole mixers.
 
-use mixer_rt::tables::{Facets, MOST_ITERATIONS, Outline, PASSES};
+use mixer_rt::tables::{Facets, MOST_ITERATIONS, Outline};
 
 use mixer_compiler::Compiled;
 use mixer_compiler::airframe::Basis;
@@ -63,10 +63,11 @@ const ITERATION_UNIT: [u32; 2] = [355, 420];
 /// The pair of a unit looked up among several, in least norm or in an iteration.
 const KIND: u32 = 25;
 
-/// A pass over single rotors, and one unit in it that is one; such a unit after the passes, and its throttle found apart.
+/// A pass over single rotors, and one unit in it that is one; such a unit before and after the passes, and its throttle
+/// found apart.
 const PASS: u32 = 60;
-const PASS_UNIT: u32 = 190;
-const SINGLE_UNIT: u32 = 130;
+const PASS_UNIT: u32 = 215;
+const SINGLE_UNIT: u32 = 350;
 const SINGLE_APART: u32 = 350;
 
 /// A slack of the request in all iterations: that of a reserve, and that of yaw beyond the request with rotors out.
@@ -104,7 +105,9 @@ fn least_norm(compiled: &Compiled) -> Option<u32> {
     let pair = compiled.evaluator.instructions(basis)? + forward(basis) + PER_UNIT + kind(compiled);
     let passes = match single {
         0 => 0,
-        _ => PASSES * (PASS + n * KIND + single * PASS_UNIT) + single * SINGLE_UNIT,
+        _ => {
+            u32::from(compiled.tables.passes) * (PASS + n * KIND + single * PASS_UNIT) + single * SINGLE_UNIT
+        }
     };
     Some((n - single) * pair + passes)
 }

@@ -25,9 +25,10 @@ const PER_CORRECTION: u32 = 50;
 /// The pair of a unit looked up among several.
 const PER_KIND: u32 = 35;
 
-/// All passes over single rotors, and one of these in them.
-const PER_PASSES: u32 = 175;
-const PER_SINGLE: u32 = 772;
+/// A pass over single rotors, one of these in it, and such a one before and after the passes.
+const PER_PASS: u32 = 44;
+const PER_STEP: u32 = 130;
+const PER_SINGLE: u32 = 338;
 
 /// Requests that least norm delivers: the median over attainable ones.
 const CLOSED_FORM: Overhead = Overhead {
@@ -77,7 +78,10 @@ impl Overhead {
         let airframe = &compiled.airframe;
         let single = airframe.single_units() as u32;
         let pairs = airframe.units.len() as u32 - single;
-        let passes = if single > 0 { PER_PASSES } else { 0 };
+        let passes = match single {
+            0 => 0,
+            _ => u32::from(compiled.tables.passes) * (PER_PASS + single * PER_STEP) + single * PER_SINGLE,
+        };
         let corrections = airframe.voltage.iter().chain(&airframe.air).count() as u32;
         let kind = if airframe.is_unlike() { PER_KIND } else { 0 };
         let one = compiled.evaluator.instructions(airframe.pair.basis)? + kind;
@@ -85,7 +89,6 @@ impl Overhead {
             instructions: self.per_mix
                 + pairs * (self.per_unit + one)
                 + passes
-                + single * PER_SINGLE
                 + PER_CORRECTION * corrections,
             error: self.error,
         })
