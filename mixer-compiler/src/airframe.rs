@@ -47,7 +47,7 @@ keys! { FILE = "":
     THROTTLE "throttle" = "", ValueKind::Table(&throttle::TABLE),
         "The range of every rotor's throttle.".required();
     PAIR "pair" = "", ValueKind::TableOrTables(&pair::TABLE),
-        "Total thrust and torque of one unit at the reference voltage, from the bench; `[[pair]]` with a name each where units differ.".required();
+        "Total thrust and torque of one unit at the reference voltage, from the bench; `[[pair]]` with a name each where units differ. None where all units are single rotors.";
     ROTOR "rotor" = "", ValueKind::Tables(&single_rotor::TABLE),
         "One for each kind of single rotor, where units are not all pairs.";
     VOLTAGE "voltage" = "", ValueKind::Table(&correction::VOLTAGE_TABLE),
@@ -81,7 +81,7 @@ pub struct Airframe {
     /// Range of every throttle.
     pub throttle: Throttle,
     /// Model of one pair at the reference voltage: that of all units, or where they differ that of the first
-    /// `[[pair]]`.
+    /// `[[pair]]`. Where all units are single rotors, two of the first kind without a wake between them.
     pub pair: Pair,
     /// The other pairs, where units differ: [`Airframe::pair_of`].
     pub other_pairs: Vec<Pair>,
@@ -156,6 +156,11 @@ impl Airframe {
         units.filter(|unit| unit.lower_channel.is_none()).count()
     }
 
+    /// Whether a unit is a pair.
+    pub fn has_pairs(&self) -> bool {
+        self.single_units() < self.units.len()
+    }
+
     /// The pairs of the file, then its single rotors as pairs: [`Unit::pair`] counts them in this order.
     pub fn kinds(&self) -> impl Iterator<Item = &Pair> {
         self.pairs().chain(&self.single_rotors)
@@ -225,7 +230,7 @@ impl Airframe {
             let values = pairs().map(|unit| terms(self.pair_of(unit))[term]);
             values.sum::<f64>() / pairs().count() as f64
         };
-        if self.is_unlike() {
+        if self.is_unlike() && self.has_pairs() {
             let terms = 0..self.pair.thrust_n.len();
             of_first.pair.thrust_n = terms
                 .clone()
@@ -394,6 +399,12 @@ fn read(table: &DeTable<'_>, faults: &mut Vec<Diagnostic>) -> Option<Airframe> {
     let allocation = file.table(&ALLOCATION, allocation::read);
     let vehicle = file.table(&VEHICLE, vehicle::read);
 
+    let all_single = file.key_place(&ROTOR).is_some()
+        && file.key_place(&LAYOUT).is_none()
+        && units.iter().all(|unit| unit.rotor.is_some());
+    if file.key_place(&PAIR).is_none() && !all_single {
+        file.faults.push(file.missing(&PAIR));
+    }
     let written = file.key_place(&UNIT);
     let is_found = || file.faults.iter().any(|fault| fault.key.starts_with("unit"));
     if written.is_some()
@@ -455,7 +466,9 @@ fn read(table: &DeTable<'_>, faults: &mut Vec<Diagnostic>) -> Option<Airframe> {
         name: name?,
         description: description.map(Spanned::into_inner).unwrap_or_default(),
         throttle: throttle?,
-        pair: pairs.next()?,
+        pair: pairs
+            .next()
+            .or_else(|| single_rotor::two_of(single_rotors.as_ref()?.first()?))?,
         other_pairs: pairs.collect(),
         single_rotors: single_rotors?,
         voltage: voltage.flatten(),

@@ -96,8 +96,8 @@ fn check(airframe: &Airframe, compiled: Option<(&Effectiveness, [f64; 2])>) -> V
         tell(airframe, &|_| true);
         return found;
     }
-    for of_pair in airframe.of_each_pair() {
-        tell(&of_pair, &|of| matches!(of, Of::Pair));
+    for of_pair in airframe.of_each_pair().iter().filter(|_| airframe.has_pairs()) {
+        tell(of_pair, &|of| matches!(of, Of::Pair));
     }
     tell(airframe, &|of| matches!(of, Of::Frame));
     found

@@ -157,7 +157,8 @@ pub(crate) fn tolerance(
     // missed.
     let correction = CorrectionBounds::new(airframe, corrections);
     let (mut efforts, mut stated) = ([0.0f64; 2], [0.0f64; 2]);
-    for (of_pair, Selected { map, certificate, .. }) in airframes.iter().zip(selected) {
+    let of_pairs = airframes.iter().zip(selected).filter(|_| airframe.has_pairs());
+    for (of_pair, Selected { map, certificate, .. }) in of_pairs {
         let rounding = proof::rounding(of_pair, map, &correction);
         efforts = [0, 1].map(|k| efforts[k].max(certificate.reference[k] + rounding[k]));
         stated = [0, 1].map(|k| stated[k].max(certificate.stated[k]));

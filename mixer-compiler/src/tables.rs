@@ -59,13 +59,13 @@ pub struct MixerTables {
     pub power_bias_nm_per_n: f32,
     /// The closed form of allocation, where the layout allows one.
     pub closed_form: Option<ClosedFormTable>,
-    /// What each pair gives, where they differ.
+    /// What each pair beside the first gives.
     pub kinds: Vec<Kind<QuantityTable, InverseTable>>,
     /// Thrust and torque of each kind of single rotor.
     pub single_rotors: Vec<[SingleRotor; 2]>,
     /// Passes of least norm over them.
     pub passes: u8,
-    /// Which of these each unit is: of the pairs, then of the single rotors.
+    /// Which kind each unit is, where they differ: those of `kinds`, then the single rotors; 255 the first pair.
     pub kind_of: Vec<u8>,
     /// Largest errors of the mixer.
     pub tolerance: Tolerance,
@@ -200,10 +200,7 @@ impl MixerTables {
             .zip(maps)
             .map(|(airframe, map)| kind(airframe, map))
             .collect();
-        let first = kinds[0].clone();
-        if !airframe.is_unlike() {
-            kinds.clear();
-        }
+        let first = kinds.remove(0);
         MixerTables {
             is_vertical: effectiveness.is_vertical(),
             units: unit_tables(airframe, effectiveness),
@@ -221,9 +218,12 @@ impl MixerTables {
             },
             power_bias_nm_per_n: allocation.power_bias_nm_per_n as f32,
             closed_form,
-            kind_of: match kinds.is_empty() {
-                true => Vec::new(),
-                false => airframe.units.iter().map(|unit| unit.pair as u8).collect(),
+            kind_of: match airframe.is_unlike() {
+                true => {
+                    let units = airframe.units.iter();
+                    units.map(|unit| (unit.pair as u8).wrapping_sub(1)).collect()
+                }
+                false => Vec::new(),
             },
             kinds,
             single_rotors: {
@@ -277,24 +277,24 @@ impl MixerTables {
     /// The kinds of units as `mixer-rt` reads them.
     pub(crate) fn unlike(&self) -> Option<Unlike<'_, QuantityTable, InverseTable>> {
         let (kinds, of) = (self.kinds.as_slice(), self.kind_of.as_slice());
-        (!kinds.is_empty()).then_some(Unlike { kinds, of })
+        (!of.is_empty()).then_some(Unlike { kinds, of })
     }
 
     /// The same tables where all units have this one of the pairs.
     pub(crate) fn of_pair(&self, pair: usize) -> Self {
-        let Some(kind) = self.kinds.get(pair).cloned() else {
-            return self.clone();
-        };
-        MixerTables {
-            pair: kind.pair,
-            singles: kind.singles,
-            inverse: kind.inverse,
-            mean_square_slopes: kind.mean_square_slopes,
+        let mut alike = MixerTables {
             kinds: Vec::new(),
             single_rotors: Vec::new(),
             kind_of: Vec::new(),
             ..self.clone()
+        };
+        if let Some(kind) = pair.checked_sub(1).and_then(|other| self.kinds.get(other)) {
+            alike.pair = kind.pair;
+            alike.singles = kind.singles;
+            alike.inverse = kind.inverse.clone();
+            alike.mean_square_slopes = kind.mean_square_slopes;
         }
+        alike
     }
 
     /// Number of output channels.
@@ -417,10 +417,8 @@ impl MixerTables {
 
     /// Bytes of the inverse map's own constants.
     pub fn inverse_bytes(&self) -> usize {
-        match self.kinds.as_slice() {
-            [] => self.inverse.bytes(),
-            kinds => kinds.iter().map(|kind| kind.inverse.bytes()).sum(),
-        }
+        let others = self.kinds.iter().map(|kind| kind.inverse.bytes());
+        self.inverse.bytes() + others.sum::<usize>()
     }
 }
 

@@ -46,6 +46,22 @@ pub(super) fn read(table: &mut Fields<'_, '_>, throttle: Option<&Throttle>) -> O
     })
 }
 
+/// Two of a single rotor as a pair without a wake between them.
+pub(super) fn two_of(rotor: &Pair) -> Option<Pair> {
+    let upper = rotor.lower_out.clone()?;
+    let lower = RotorAlone {
+        torque_nm: upper.torque_nm.map(|term| -term),
+        ..upper.clone()
+    };
+    let terms = |[u1, u2, u3]: [f64; 3], [l1, l2, l3]: [f64; 3]| vec![u3, 0.0, 0.0, l3, u2, 0.0, l2, u1, l1];
+    Some(Pair {
+        thrust_n: terms(upper.thrust_n, lower.thrust_n),
+        torque_nm: terms(upper.torque_nm, lower.torque_nm),
+        upper_out: Some(lower),
+        ..rotor.clone()
+    })
+}
+
 /// Torque over thrust of a single rotor at half of its largest thrust, m: what M+ takes for its share.
 pub(crate) fn torque_per_thrust(curve: &RotorAlone, throttle: &Throttle) -> f64 {
     let [most, _] = curve.efforts(throttle.max);

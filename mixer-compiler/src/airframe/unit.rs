@@ -306,8 +306,7 @@ fn check_pairs(
                 let (message, help) = match is_lone {
                     true => (
                         "no unit has the pair".to_owned(),
-                        "this compiler is for frames with a coaxial pair: one unit at least has no `rotor`"
-                            .to_owned(),
+                        "remove it, or `rotor` from a unit that is a pair".to_owned(),
                     ),
                     false => {
                         let of_layout = if table == "pair" {
@@ -342,7 +341,7 @@ fn check_pairs(
             (None, Some(name)) => rotors
                 .iter()
                 .position(|known| known == name)
-                .map(|place| pairs.len() + place),
+                .map(|place| pairs.len().max(1) + place),
             // Pairs at fault are told of.
             _ if pairs.is_empty() || !is_clear => return None,
             (None, None) => is_one.then_some(0),

@@ -116,7 +116,7 @@ fn longest_run(tables: &MixerTables, is_delivered: &dyn Fn(f32) -> bool) -> Opti
             .map(|unit| unit.effectiveness[0][3])
             .enumerate()
     };
-    let most = match tables.kinds.is_empty() {
+    let most = match tables.kind_of.is_empty() {
         true => units().map(|(_, lift)| lift).sum::<f32>() * full(0),
         false => units().map(|(unit, lift)| lift * full(unit)).sum(),
     };

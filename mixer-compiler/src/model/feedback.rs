@@ -116,7 +116,7 @@ impl Curve {
             let own = by_q
                 * Interval {
                     low: 1.0 / by_f.high,
-                    high: 1.0 / by_f.low,
+                    high: 1.0 / by_f.low.max(0.0),
                 };
             slope.low = slope.low.min(own.low);
             slope.high = slope.high.max(own.high);
@@ -277,7 +277,7 @@ impl Feedback {
                 .map(move |(unit, missed)| (unit.lower_channel, factors[k] * missed[k]))
         };
         [0, 1].map(|k| {
-            of(k).fold(of_pairs[k], |most, (lower, missed)| match lower {
+            of(k).fold(0.0, |most: f64, (lower, missed)| match lower {
                 Some(_) => most.max(of_pairs[k] + missed),
                 None => most.max(missed),
             })
@@ -330,6 +330,60 @@ mod tests {
             text = text.replace(&format!("{key}1.75"), &format!("{key}{exponent}"));
         }
         Airframe::read(&Source::new(name, text)).unwrap()
+    }
+
+    /// Steps in f64 between throttles drawn, along curves drawn: concave and convex ones, flat at idle.
+    #[test]
+    fn steps_miss_no_more_than_is_bound() {
+        let mut state = 5u64;
+        let mut share = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            (state >> 11) as f64 / (1u64 << 53) as f64
+        };
+        let range = [0.02, 1.0];
+        let (mut curves, mut closest) = (0, 0.0f64);
+        while curves < 200 {
+            let mut cubic = |size: f64| -> [f64; 3] {
+                let (linear, bend) = (0.3 * share() - 0.02, 1.6 * share() - 0.6);
+                [linear, 1.0 - linear - bend, bend].map(|term| size * term)
+            };
+            let rotor = RotorAlone {
+                thrust_n: cubic(15.0),
+                torque_nm: cubic(0.3),
+            };
+            let grows =
+                |k: usize| (0..=100).all(|part| rotor.slopes(0.02 + 0.0098 * f64::from(part))[k] > 0.01);
+            if !grows(0) {
+                continue;
+            }
+            curves += 1;
+            let curve = Curve::new(&rotor, range, Interval::exact(1.0), 0.02, [[0.0; 4]; 2]);
+            for _ in 0..500 {
+                let at = range[0] + (range[1] - range[0]) * share();
+                let to = (at + 0.4 * (2.0 * share() - 1.0)).clamp(range[0], range[1]);
+                let off = rotor.efforts(to)[0] - rotor.efforts(at)[0];
+                let half = [rotor.thrust_n, rotor.torque_nm].map(|[_, a2, a3]| a2 + 3.0 * a3 * at);
+                let (given, slopes) = (rotor.efforts(at), rotor.slopes(at));
+                let root = (slopes[0] * slopes[0] + 4.0 * half[0] * off).max(0.0).sqrt();
+                let next = (at + 2.0 * off / (slopes[0] + root)).clamp(range[0], range[1]);
+                let step = next - at;
+                let [reached, torque] = [0, 1].map(|k| given[k] + (half[k] * step + slopes[k]) * step);
+                let torque = torque + slopes[1] / slopes[0] * (given[0] + off - reached);
+                let missed = [
+                    rotor.efforts(next)[0] - rotor.efforts(to)[0],
+                    torque - rotor.efforts(to)[1],
+                ];
+                let bound = curve.step(off.abs());
+                for k in 0..2 {
+                    assert!(
+                        missed[k].abs() <= bound[k] + 1e-12,
+                        "{missed:?} {bound:?} {rotor:?}"
+                    );
+                    closest = closest.max(missed[k].abs() / bound[k]);
+                }
+            }
+        }
+        assert!(closest > 0.1, "{closest}");
     }
 
     /// The passes in f64 from the wrench of throttles, against the efforts of these throttles.

@@ -278,7 +278,7 @@ impl<'a, 'f> Fields<'a, 'f> {
         })
     }
 
-    fn missing(&self, key: &Key) -> Diagnostic {
+    pub(crate) fn missing(&self, key: &Key) -> Diagnostic {
         let (name, path, example) = (key.name, self.key_path(key.name), key.example());
         let (message, help) = match key.kind {
             ValueKind::Table(shape) | ValueKind::Tables(shape) | ValueKind::TableOrTables(shape) => (

@@ -19,9 +19,9 @@ pub struct Kind<P, I> {
 /// The kinds of a frame's units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Unlike<'a, P, I> {
-    /// The kinds.
+    /// The kinds of pairs beside the tables' own.
     pub kinds: &'a [Kind<P, I>],
-    /// The kind of each unit, by index.
+    /// The kind of each unit: an index into `kinds`, then of single rotors; beyond all of them the tables' own pair.
     pub of: &'a [u8],
 }
 

@@ -51,7 +51,8 @@ impl Zoo {
         }
     }
 
-    /// The same frames with single rotors in the front half of their units, where they have several.
+    /// The same frames with single rotors in the front half of their units, where they have several; one of four has no
+    /// pair, where four units or more allow it.
     #[must_use]
     pub fn with_single_rotors(self) -> Zoo {
         Zoo {
@@ -92,19 +93,24 @@ impl Zoo {
             write_pair(&mut rear, &pair.another(&mut of_rear));
             let (_, rear) = rear.split_once("\n[pair]\n").unwrap_or_default();
             text = text.replacen("\n[pair]\n", "\n[[pair]]\nname = \"front\"\n", 1);
-            // The tables of the first pair end where another table begins.
-            let end = ["\n[voltage]", "\n[air]", "\n[inverse]"]
-                .iter()
-                .filter_map(|table| text.find(table));
-            let end = end.min().unwrap_or(text.len());
-            text.insert_str(end, &format!("\n[[pair]]\nname = \"rear\"\n{rear}"));
+            text.insert_str(
+                end_of_pair(&text),
+                &format!("\n[[pair]]\nname = \"rear\"\n{rear}"),
+            );
         }
         write_allocation(&mut text, class, &pair, units.len(), &mut random);
         let has_single_rotors = self.has_single_rotors && units.len() > 1;
+        let has_no_pair = has_single_rotors
+            && units.len() > 3
+            && (index + index / Class::CYCLE.len() as u64).is_multiple_of(4);
         if has_single_rotors {
             write_single_rotor(&mut text, &pair, &mut of_rear);
+            if has_no_pair && let Some(begin) = text.find("\n[pair]\n") {
+                text.replace_range(begin..end_of_pair(&text), "");
+            }
         }
         let of_unit = |unit: usize| match (is_rear[unit], is_unlike) {
+            _ if has_no_pair => Some("rotor = \"single\""),
             (false, _) if has_single_rotors => Some("rotor = \"single\""),
             (true, true) => Some("pair = \"rear\""),
             (false, true) => Some("pair = \"front\""),
@@ -288,6 +294,19 @@ fn write_single_rotor(text: &mut String, pair: &Pair, random: &mut Random) {
         .filter(without)
         .map(|line| format!("{line}\n"))
         .collect();
+}
+
+/// Where the tables of the first pair end: where another table begins.
+fn end_of_pair(text: &str) -> usize {
+    let tables = [
+        "\n[voltage]",
+        "\n[air]",
+        "\n[inverse]",
+        "\n[allocation]",
+        "\n[[rotor]]",
+    ];
+    let end = tables.iter().filter_map(|table| text.find(table)).min();
+    end.unwrap_or(text.len())
 }
 
 fn write_units(

@@ -23,9 +23,9 @@ pub struct Cost {
     pub inverse_instructions: Option<u32>,
     /// The inverse map of one unit, with the cycles that divisions and roots take longer.
     pub inverse_cycles: Option<u32>,
-    /// The inverse map of all units.
+    /// The inverse map of all units that are pairs.
     pub inverses_instructions: Option<u32>,
-    /// The inverse map of all units.
+    /// The inverse map of all units that are pairs.
     pub inverses_cycles: Option<u32>,
     /// The whole mix of a request that least norm delivers, estimated.
     pub delivered_instructions: Option<u32>,
@@ -53,10 +53,10 @@ impl Cost {
     /// The cost of a compiled airframe.
     pub fn new(compiled: &Compiled) -> Self {
         let basis = compiled.airframe.pair.basis;
-        let units = compiled.airframe.units.len();
+        let pairs = compiled.airframe.units.len() - compiled.airframe.single_units();
         let delivered = typical::delivered(compiled);
         let attainable = typical::attainable(compiled);
-        let all = |one: Option<u32>| one.map(|one| one * units as u32);
+        let all = |one: Option<u32>| one.map(|one| one * pairs as u32);
         let inverse_instructions = compiled.evaluator.instructions(basis);
         let inverse_cycles = compiled.evaluator.cost(basis);
         Cost {

@@ -159,10 +159,15 @@ fn gives(list: &mut List, compiled: &Compiled) {
         [shortest, longest] => format!(", arms of {shortest} to {longest} m"),
     };
     let single = airframe.single_units();
-    let and_single = or_nothing(Some(single).filter(|single| *single > 0), |single| {
-        format!(" and {single} single ones")
-    });
-    let words = format!(" in {} coaxial units{and_single}{told}", units - single);
+    let pairs = match units - single {
+        1 => " in 1 coaxial unit".to_owned(),
+        pairs => format!(" in {pairs} coaxial units"),
+    };
+    let words = match single {
+        0 => pairs + &told,
+        _ if single == units => format!(", all single{told}"),
+        _ => format!("{pairs} and {single} single ones{told}"),
+    };
     list.say("rotors", airframe.rotors(), "", words)
         .json("units", units)
         .json("rotors", airframe.rotors())
@@ -204,8 +209,10 @@ fn gives(list: &mut List, compiled: &Compiled) {
     let whose = or_nothing(needs_most.filter(|_| airframe.pairs().count() > 1), |of_pair| {
         format!(" of pair \"{}\"", of_pair.airframe.pair.name)
     });
-    let words =
-        format!("; idle gives {share:.1} % of the largest thrust, the map{whose} needs {needed:.3} at least");
+    let needed = or_nothing(Some(needed).filter(|_| airframe.has_pairs()), |needed| {
+        format!(", the map{whose} needs {needed:.3} at least")
+    });
+    let words = format!("; idle gives {share:.1} % of the largest thrust{needed}");
     list.say("throttle", throttle, "", words)
         .json("min_idle", compiled.least_idle)
         .in_verdict();
@@ -285,9 +292,12 @@ fn hover(list: &mut List, compiled: &Compiled) {
             format!("; by [pair.uncertainty] {low_u:.3} to {u:.3} upper, {low_l:.3} to {l:.3} lower")
         });
         let [upper, lower] = layers.map(|(throttle, outputs)| layer(throttle, outputs));
-        let words = format!(" throttle of upper, lower rotors{volts}{left}{band}");
-        list.say(name, format!("{upper}, {lower}"), "", words)
-            .in_verdict();
+        let (throttle, whose) = match compiled.airframe.has_pairs() {
+            true => (format!("{upper}, {lower}"), " of upper, lower rotors"),
+            false => (upper, ""),
+        };
+        let words = format!(" throttle{whose}{volts}{left}{band}");
+        list.say(name, throttle, "", words).in_verdict();
     }
     let Some(at) = hover.at.last().filter(|at| !at.rotor_out.is_empty()) else {
         return;
@@ -325,7 +335,8 @@ fn power(list: &mut List, compiled: &Compiled) {
             format!("by the pair's polynomials, extrapolated from {idle:?} to 0"),
         ),
     };
-    let pairs = airframe.of_each_pair();
+    let mut pairs = airframe.of_each_pair();
+    pairs.retain(|_| airframe.has_pairs());
     let told = pairs.iter().map(|of| {
         let [lower, upper] = [&of.pair.lower_out, &of.pair.upper_out].map(|out| source(out.is_some()));
         let words = match (&lower.1, &upper.1) {
@@ -400,8 +411,10 @@ impl List {
         unit: &'static str,
         each: &[(Compiled, String, String)],
     ) -> &mut Fact {
-        if let [(_, value, words)] = each {
-            return self.say(name, value, unit, words.as_str());
+        match each {
+            [(_, value, words)] => return self.say(name, value, unit, words.as_str()),
+            [] => return self.say(name, "none", "", ""),
+            _ => {}
         }
         let told = each.iter().map(|(of, value, words)| {
             let space = if unit.is_empty() { "" } else { " " };
@@ -414,7 +427,8 @@ impl List {
 
 /// The pairs' maps.
 fn model(list: &mut List, compiled: &Compiled) {
-    let pairs = compiled.of_each_pair();
+    let mut pairs = compiled.of_each_pair();
+    pairs.retain(|_| compiled.airframe.has_pairs());
     let each = |told: &dyn Fn(&Compiled) -> (String, String)| -> Vec<(Compiled, String, String)> {
         let of = |compiled: &Compiled| {
             let (value, words) = told(compiled);

@@ -127,7 +127,11 @@ fn interior(compiled: &Compiled, slacks: u32) -> u32 {
 }
 
 fn kind(compiled: &Compiled) -> u32 {
-    if compiled.tables.kinds.is_empty() { 0 } else { KIND }
+    if compiled.tables.kind_of.is_empty() {
+        0
+    } else {
+        KIND
+    }
 }
 
 /// Checks, and corrections of voltage and density where there are any.

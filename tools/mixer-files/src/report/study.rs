@@ -94,6 +94,11 @@ impl<'a> Study<'a> {
         let name = |pair: &Pair| format!("\"{}\"", pair.name);
         let others: Vec<String> = self.compiled.airframe.pairs().map(name).collect();
         let own = name(&self.of_pair.airframe.pair);
+        if !self.compiled.airframe.has_pairs() {
+            return Some(format!(
+                "No unit is a pair: the maps are those of two rotors {own} without a wake between them."
+            ));
+        }
         self.compiled.airframe.is_unlike().then(|| {
             format!(
                 "The maps of a pair are those of {own} among {}; `report --pair` draws another\u{2019}s.",
