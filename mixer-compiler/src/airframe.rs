@@ -47,7 +47,7 @@ keys! { FILE = "":
     THROTTLE "throttle" = "", ValueKind::Table(&throttle::TABLE),
         "The range of every rotor's throttle.".required();
     PAIR "pair" = "", ValueKind::TableOrTables(&pair::TABLE),
-        "Total thrust and torque of one unit at the reference voltage, from the bench; `[[pair]]` with a name each where units differ. None where all units are single rotors.";
+        "Total thrust and torque of one unit at the reference voltage, from the bench; `[[pair]]` with a name each where units differ. Left out where all units are single rotors.";
     ROTOR "rotor" = "", ValueKind::Tables(&single_rotor::TABLE),
         "One for each kind of single rotor, where units are not all pairs.";
     VOLTAGE "voltage" = "", ValueKind::Table(&correction::VOLTAGE_TABLE),

@@ -80,7 +80,11 @@ pub fn compile(source: &Source) -> Result<Compiled, Diagnostics> {
 fn compile_airframe(source: &Source, airframe: Airframe) -> Result<Compiled, Vec<Diagnostic>> {
     let model = Model::new(airframe)?;
     let selected = selection::select(&model.airframes, &model.corrections)?;
-    let (tables, lost_outside_border) = model.tables(&selected);
+    let of_pairs = |k: usize| selected.iter().map(move |of| of.certificate.stated[k]);
+    let of_pairs = [0, 1].map(|k| of_pairs(k).fold(0.0, f64::max));
+    let feedback = Feedback::new(&model.airframe, &model.effectiveness, of_pairs);
+    feedback.check(&model.airframe)?;
+    let (tables, lost_outside_border) = model.tables(&selected, &feedback);
     let thrust_range_n = thrust_range::thrust_range(&model.airframe, &tables)?;
     thrust_range::check_ends(&model.airframe, &tables, thrust_range_n)?;
     let of_pairs = model.invertible.iter().zip(&selected);
@@ -95,10 +99,7 @@ fn compile_airframe(source: &Source, airframe: Airframe) -> Result<Compiled, Vec
     for other in others {
         whole.include(other);
     }
-    let stated = model
-        .feedback
-        .with_pairs(&model.airframe, whole.certificate.stated);
-    whole.certificate.stated = stated;
+    whole.certificate.stated = feedback.stated;
     let compiled = Compiled {
         source: source.clone(),
         pair: PairMap::new(&model.airframe.pair, &model.airframe.throttle),
@@ -136,7 +137,6 @@ struct Model {
     /// Of each pair the proof that it can be inverted, and the least idle.
     invertible: Vec<(Injectivity, f64)>,
     corrections: CorrectionTables,
-    feedback: Feedback,
 }
 
 impl Model {
@@ -156,10 +156,7 @@ impl Model {
             tolerances = gather(tolerances, plausible::check_tolerances(airframe), Ok(())).map(|_| ());
         }
         let (effectiveness, invertible, ()) = gather(effectiveness, invertible, tolerances)?;
-        let feedback = Feedback::new(&airframe, &effectiveness);
-        feedback.check(&airframe)?;
         Ok(Model {
-            feedback,
             corrections: CorrectionTables::new(&airframe),
             airframe,
             airframes,
@@ -170,13 +167,12 @@ impl Model {
 
     /// The tables, and the share of the attainable set's area that the sides of the closed form lose,
     /// or why there is none.
-    fn tables(&self, selected: &[Selected]) -> (MixerTables, Result<f64, &'static str>) {
+    fn tables(&self, selected: &[Selected], feedback: &Feedback) -> (MixerTables, Result<f64, &'static str>) {
         let Model {
             airframe,
             airframes,
             effectiveness,
             corrections,
-            feedback,
             ..
         } = self;
         let parts = Parts {

@@ -46,6 +46,8 @@ pub(crate) struct Feedback {
     pub(crate) missed: Vec<[f64; 2]>,
     /// Of the thrust that a single rotor is asked for last, N.
     pub(crate) thrust_n: f64,
+    /// Of any unit under all conditions with what the inverse of a pair misses, N and N m.
+    pub(crate) stated: [f64; 2],
 }
 
 /// Bounds over a part of a curve.
@@ -197,9 +199,27 @@ fn moved(row: &[f64; 4], error: &[f64; 4]) -> f64 {
     row.iter().zip(error).map(|(share, error)| share * error).sum()
 }
 
+/// Largest errors of any unit under all conditions, N and N m, of what the units miss beside the inverses of pairs, which
+/// miss `of_pairs`.
+fn with_pairs(airframe: &Airframe, missed: &[[f64; 2]], of_pairs: [f64; 2]) -> [f64; 2] {
+    let factors = law::largest_factors(airframe);
+    let units = || airframe.units.iter().zip(missed);
+    [0, 1].map(|k| {
+        units().fold(0.0, |most: f64, (unit, missed)| {
+            let own = if unit.lower_channel.is_some() {
+                of_pairs[k]
+            } else {
+                0.0
+            };
+            most.max(own + factors[k] * missed[k])
+        })
+    })
+}
+
 impl Feedback {
-    /// Of an airframe with single rotors or without.
-    pub(crate) fn new(airframe: &Airframe, effectiveness: &Effectiveness) -> Feedback {
+    /// Of an airframe with single rotors or without, where the inverses of pairs miss `of_pairs` at most under all
+    /// conditions, N and N m.
+    pub(crate) fn new(airframe: &Airframe, effectiveness: &Effectiveness, of_pairs: [f64; 2]) -> Feedback {
         let n = airframe.units.len();
         let [low, high] = law::torque_over_thrust(airframe);
         let ratio = Interval { low, high };
@@ -256,10 +276,13 @@ impl Feedback {
                 thrust_n = thrust_n.max(own + curve.moved(&error));
                 [own, curve.slope.magnitude() * own]
             });
+            let missed: Vec<[f64; 2]> = missed.collect();
+            let stated = with_pairs(airframe, &missed, of_pairs);
             let feedback = Feedback {
                 passes,
-                missed: missed.collect(),
+                missed,
                 thrust_n,
+                stated,
             };
             if passes == MOST_PASSES || feedback.excess(airframe).is_none() {
                 return feedback;
@@ -267,31 +290,12 @@ impl Feedback {
         }
     }
 
-    /// Largest errors of any unit under all conditions, N and N m, where those of the pairs' inverses are `of_pairs`.
-    pub(crate) fn with_pairs(&self, airframe: &Airframe, of_pairs: [f64; 2]) -> [f64; 2] {
-        let factors = law::largest_factors(airframe);
-        let units = airframe.units.iter().zip(&self.missed);
-        let of = |k: usize| {
-            units
-                .clone()
-                .map(move |(unit, missed)| (unit.lower_channel, factors[k] * missed[k]))
-        };
-        [0, 1].map(|k| {
-            of(k).fold(0.0, |most: f64, (lower, missed)| match lower {
-                Some(_) => most.max(of_pairs[k] + missed),
-                None => most.max(missed),
-            })
-        })
-    }
-
     /// Largest errors of any unit under all conditions, N and N m, where they are beyond the file's tolerances.
     fn excess(&self, airframe: &Airframe) -> Option<[f64; 2]> {
         let allowed = airframe.inverse.tolerances();
-        let factors = law::largest_factors(airframe);
-        let left = [0, 1].map(|k| {
-            let of_units = self.missed.iter().map(|missed| missed[k]);
-            factors[k] * of_units.fold(if k == 0 { self.thrust_n } else { 0.0 }, f64::max)
-        });
+        let [thrust, torque] = self.stated;
+        let asked = law::largest_factors(airframe)[0] * self.thrust_n;
+        let left = [thrust.max(asked), torque];
         (0..2).any(|k| left[k] > allowed[k]).then_some(left)
     }
 
@@ -332,14 +336,30 @@ mod tests {
         Airframe::read(&Source::new(name, text)).unwrap()
     }
 
+    /// Numbers drawn from 0 to 1.
+    fn shares(mut state: u64) -> impl FnMut() -> f64 {
+        move || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            (state >> 11) as f64 / (1u64 << 53) as f64
+        }
+    }
+
+    /// A step in f64 from a throttle to a thrust, N, as in the runtime: the throttle, and the torque along the parabola.
+    fn parabola(curve: &RotorAlone, at: f64, thrust_n: f64, range: [f64; 2]) -> [f64; 2] {
+        let (given, slopes) = (curve.efforts(at), curve.slopes(at));
+        let half = [curve.thrust_n, curve.torque_nm].map(|[_, a2, a3]| a2 + 3.0 * a3 * at);
+        let off = thrust_n - given[0];
+        let root = (slopes[0] * slopes[0] + 4.0 * half[0] * off).max(0.0).sqrt();
+        let next = (at + 2.0 * off / (slopes[0] + root)).clamp(range[0], range[1]);
+        let step = next - at;
+        let [reached, torque] = [0, 1].map(|k| given[k] + (half[k] * step + slopes[k]) * step);
+        [next, torque + slopes[1] / slopes[0] * (thrust_n - reached)]
+    }
+
     /// Steps in f64 between throttles drawn, along curves drawn: concave and convex ones, flat at idle.
     #[test]
     fn steps_miss_no_more_than_is_bound() {
-        let mut state = 5u64;
-        let mut share = || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-            (state >> 11) as f64 / (1u64 << 53) as f64
-        };
+        let mut share = shares(5);
         let range = [0.02, 1.0];
         let (mut curves, mut closest) = (0, 0.0f64);
         while curves < 200 {
@@ -351,9 +371,8 @@ mod tests {
                 thrust_n: cubic(15.0),
                 torque_nm: cubic(0.3),
             };
-            let grows =
-                |k: usize| (0..=100).all(|part| rotor.slopes(0.02 + 0.0098 * f64::from(part))[k] > 0.01);
-            if !grows(0) {
+            let rise = |part| rotor.slopes(0.02 + 0.0098 * f64::from(part))[0];
+            if !(0..=100).all(|part| rise(part) > 0.01) {
                 continue;
             }
             curves += 1;
@@ -362,13 +381,7 @@ mod tests {
                 let at = range[0] + (range[1] - range[0]) * share();
                 let to = (at + 0.4 * (2.0 * share() - 1.0)).clamp(range[0], range[1]);
                 let off = rotor.efforts(to)[0] - rotor.efforts(at)[0];
-                let half = [rotor.thrust_n, rotor.torque_nm].map(|[_, a2, a3]| a2 + 3.0 * a3 * at);
-                let (given, slopes) = (rotor.efforts(at), rotor.slopes(at));
-                let root = (slopes[0] * slopes[0] + 4.0 * half[0] * off).max(0.0).sqrt();
-                let next = (at + 2.0 * off / (slopes[0] + root)).clamp(range[0], range[1]);
-                let step = next - at;
-                let [reached, torque] = [0, 1].map(|k| given[k] + (half[k] * step + slopes[k]) * step);
-                let torque = torque + slopes[1] / slopes[0] * (given[0] + off - reached);
+                let [next, torque] = parabola(&rotor, at, rotor.efforts(to)[0], range);
                 let missed = [
                     rotor.efforts(next)[0] - rotor.efforts(to)[0],
                     torque - rotor.efforts(to)[1],
@@ -389,11 +402,7 @@ mod tests {
     /// The passes in f64 from the wrench of throttles, against the efforts of these throttles.
     #[test]
     fn passes_miss_no_more_than_is_bound() {
-        let mut state = 9u64;
-        let mut share = || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-            (state >> 11) as f64 / (1u64 << 53) as f64
-        };
+        let mut share = shares(9);
         let mut closest = 0.0f64;
         for (name, exponents) in [
             ("y4", [1.75, 1.75]),
@@ -402,7 +411,7 @@ mod tests {
         ] {
             let airframe = airframe(name, exponents);
             let effectiveness = Effectiveness::new(&airframe).unwrap();
-            let bound = Feedback::new(&airframe, &effectiveness);
+            let bound = Feedback::new(&airframe, &effectiveness, [0.0; 2]);
             let n = airframe.units.len();
             let range = [airframe.throttle.min, airframe.throttle.max];
             let (row, column) = (&effectiveness.pseudo_inverse, &effectiveness.matrix);
@@ -445,18 +454,8 @@ mod tests {
                             let share = (f / curve.efforts(range[1])[0]).clamp(0.0, 1.0);
                             throttles.push((range[1] * share.sqrt()).clamp(range[0], range[1]));
                         }
-                        let at = throttles[k];
-                        let (given, slopes) = (curve.efforts(at), curve.slopes(at));
-                        let half = [curve.thrust_n, curve.torque_nm].map(|[_, a2, a3]| a2 + 3.0 * a3 * at);
-                        let root = (slopes[0] * slopes[0] + 4.0 * half[0] * (f - given[0]))
-                            .max(0.0)
-                            .sqrt();
-                        throttles[k] =
-                            (at + 2.0 * (f - given[0]) / (slopes[0] + root)).clamp(range[0], range[1]);
-                        let step = throttles[k] - at;
-                        let [reached, torque] =
-                            [0, 1].map(|k| given[k] + (half[k] * step + slopes[k]) * step);
-                        let torque = torque + slopes[1] / slopes[0] * (f - reached);
+                        let torque;
+                        [throttles[k], torque] = parabola(curve, throttles[k], f, range);
                         for (axis, next) in next.iter_mut().enumerate() {
                             *next -= column[(axis, n + i)] * (ratio * torque - dot(n + i, &asked));
                         }
