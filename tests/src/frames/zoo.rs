@@ -51,8 +51,8 @@ impl Zoo {
         }
     }
 
-    /// The same frames with single rotors in the front half of their units, where they have several; one of four has no
-    /// pair, where four units or more allow it.
+    /// The same frames with single rotors in the front half of their units, where they have several; of regular
+    /// frames of an even number of units every other one has no pair.
     #[must_use]
     pub fn with_single_rotors(self) -> Zoo {
         Zoo {
@@ -100,9 +100,9 @@ impl Zoo {
         }
         write_allocation(&mut text, class, &pair, units.len(), &mut random);
         let has_single_rotors = self.has_single_rotors && units.len() > 1;
-        let has_no_pair = has_single_rotors
-            && units.len() > 3
-            && (index + index / Class::CYCLE.len() as u64).is_multiple_of(4);
+        // Their yaw balances.
+        let is_balanced = class == Class::Regular && units.len() > 3 && units.len().is_multiple_of(2);
+        let has_no_pair = has_single_rotors && is_balanced && index.is_multiple_of(12);
         if has_single_rotors {
             write_single_rotor(&mut text, &pair, &mut of_rear);
             if has_no_pair && let Some(begin) = text.find("\n[pair]\n") {
