@@ -175,7 +175,8 @@ impl Curve {
             short = short.max(off.magnitude() * share);
         }
         let [of_thrust, of_torque] = self.remainder;
-        let missed = |step: f64| short + of_thrust * step.powi(3);
+        let cube = |step: f64| step * step * step;
+        let missed = |step: f64| short + of_thrust * cube(step);
         let mut step = 0.0;
         loop {
             let next = self.apart(off + missed(step));
@@ -185,7 +186,7 @@ impl Curve {
             step = next;
         }
         let spread = self.slope.high - self.slope.low;
-        [missed(step), of_torque * step.powi(3) + spread * missed(step)]
+        [missed(step), of_torque * cube(step) + spread * missed(step)]
     }
 
     /// The thrust that an error of the wrench moves, N.
