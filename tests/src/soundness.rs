@@ -234,7 +234,8 @@ fn overstepping(frame: &Frame, request: &Request, answer: &Answer) -> Result<Vec
     let given = answer.achieved[3];
     let freed = if frame.compiled.airframe.is_unlike() {
         let share = |axis: usize| answer.achieved[axis] / frame.size(axis);
-        EXCESS_PER_TORQUE * share(0).hypot(share(1))
+        let [roll, pitch] = [share(0), share(1)];
+        EXCESS_PER_TORQUE * (roll * roll + pitch * pitch).sqrt()
     } else {
         0.0
     };
