@@ -59,7 +59,7 @@ pub struct MixerTables {
     pub power_bias_nm_per_n: f32,
     /// The closed form of allocation, where the layout allows one.
     pub closed_form: Option<ClosedFormTable>,
-    /// What each pair beside the first gives.
+    /// The forward map, the inverse map and the rotors alone of each pair but the first, in the order of the file.
     pub kinds: Vec<Kind<QuantityTable, InverseTable>>,
     /// Thrust and torque of each kind of single rotor.
     pub single_rotors: Vec<[SingleRotor; 2]>,
