@@ -134,7 +134,7 @@ fn every_frame_has_an_accurate_pseudo_inverse() {
             ];
             airframe.allocation.axes = axes[random.below(2).min(units - 1)].clone();
         }
-        let [thrust, torque] = PairMap::new(&airframe.pair, &airframe.throttle).scale();
+        let [thrust, torque] = PairMap::new(&airframe.pairs[0], &airframe.throttle).scale();
         let sizes = [vec![thrust; units], vec![torque; units]].concat();
         match Effectiveness::new(&airframe) {
             Ok(effectiveness) => {

@@ -10,13 +10,13 @@ mod name;
 mod pair;
 mod power;
 mod rotor_alone;
-pub(crate) mod single_rotor;
+mod single_rotor;
 mod throttle;
 mod uncertainty;
 mod unit;
 mod vehicle;
+mod view;
 
-use std::borrow::Cow;
 use std::ops::Range;
 
 use toml::de::DeTable;
@@ -30,10 +30,12 @@ pub use self::name::of_file as name_of_file;
 pub use self::pair::{Pair, Spin};
 pub use self::power::Power;
 pub use self::rotor_alone::RotorAlone;
+pub use self::single_rotor::SingleRotor;
 pub use self::throttle::Throttle;
 pub use self::uncertainty::Uncertainty;
 pub use self::unit::{Rotor, Unit};
 pub use self::vehicle::{GRAVITY, Vehicle};
+pub use self::view::{Kind, View};
 use crate::diagnostic::source::Source;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::spec::keys::{Shape, ValueKind, keys};
@@ -80,13 +82,11 @@ pub struct Airframe {
     pub description: String,
     /// Range of every throttle.
     pub throttle: Throttle,
-    /// Model of one pair at the reference voltage: that of all units, or where they differ that of the first
-    /// `[[pair]]`. Where all units are single rotors, two of the first kind without a wake between them.
-    pub pair: Pair,
-    /// The other pairs, where units differ: [`Airframe::pair_of`].
-    pub other_pairs: Vec<Pair>,
-    /// The single rotors, each as a pair whose lower rotor never turns, with its curves in `lower_out`.
-    pub single_rotors: Vec<Pair>,
+    /// Models of the pairs at the reference voltage, each that of a unit at least, all in one basis; empty where all units
+    /// are single rotors.
+    pub pairs: Vec<Pair>,
+    /// The kinds of single rotors, each that of a unit at least.
+    pub single_rotors: Vec<SingleRotor>,
     /// Correction for the battery's voltage, V; `None` where thrust and torque do not depend on it.
     pub voltage: Option<Correction>,
     /// Correction for the air's density, kg/m3; `None` where they do not depend on it.
@@ -102,8 +102,6 @@ pub struct Airframe {
     pub vehicle: Option<Vehicle>,
     /// `layout.first_angle_deg` as written, which the units no longer tell.
     pub(crate) first_angle_deg: Option<f64>,
-    /// Which `[[pair]]` of the file is meant by `pair`: [`Airframe::of_each_pair`].
-    view: Option<usize>,
     places: Places,
 }
 
@@ -145,111 +143,52 @@ impl Airframe {
         self.units.iter().flat_map(Unit::channels).count()
     }
 
-    /// The pairs of the file, in its order.
-    pub fn pairs(&self) -> impl Iterator<Item = &Pair> {
-        std::iter::once(&self.pair).chain(&self.other_pairs)
+    /// Number of units that are pairs.
+    pub fn pair_units(&self) -> usize {
+        self.rotors() - self.units.len()
     }
 
     /// Number of units that are single rotors.
     pub fn single_units(&self) -> usize {
-        let units = self.units.iter();
-        units.filter(|unit| unit.lower_channel.is_none()).count()
+        self.units.len() - self.pair_units()
     }
 
-    /// Whether a unit is a pair.
-    pub fn has_pairs(&self) -> bool {
-        self.single_units() < self.units.len()
-    }
-
-    /// The pairs of the file, then its single rotors as pairs: [`Unit::pair`] counts them in this order.
-    pub fn kinds(&self) -> impl Iterator<Item = &Pair> {
-        self.pairs().chain(&self.single_rotors)
-    }
-
-    /// Whether units differ.
+    /// Whether units differ, or are single rotors: whether the one pair is not that of all units.
     pub fn is_unlike(&self) -> bool {
-        !self.other_pairs.is_empty() || !self.single_rotors.is_empty()
+        self.pairs.len() + self.single_rotors.len() > 1 || self.pairs.is_empty()
     }
 
-    /// The pair of a unit, or its single rotor as one.
-    pub fn pair_of(&self, unit: &Unit) -> &Pair {
-        let Some(other) = unit.pair.checked_sub(1) else {
-            return &self.pair;
-        };
-        let single = other.checked_sub(self.other_pairs.len());
-        single.map_or_else(|| &self.other_pairs[other], |single| &self.single_rotors[single])
-    }
-
-    /// Thrust and torque of a unit that is a single rotor; `None` of a pair.
-    pub fn curve_of(&self, unit: &Unit) -> Option<&RotorAlone> {
-        let is_single = unit.lower_channel.is_none();
-        self.pair_of(unit).lower_out.as_ref().filter(|_| is_single)
+    /// What a unit is.
+    pub fn kind_of(&self, unit: &Unit) -> Kind<'_> {
+        match self.pairs.get(unit.kind) {
+            Some(pair) => Kind::Pair(pair),
+            None => Kind::SingleRotor(&self.single_rotors[unit.kind - self.pairs.len()]),
+        }
     }
 
     /// The words `, pair "front"` or `, rotor "tail"`; none where all units are alike.
-    pub fn named_pair(&self, unit: &Unit) -> String {
-        let name = &self.pair_of(unit).name;
-        match unit.lower_channel {
-            _ if !self.is_unlike() || name.is_empty() => String::new(),
-            Some(_) => format!(", pair \"{name}\""),
-            None => format!(", rotor \"{name}\""),
+    pub fn named_kind(&self, unit: &Unit) -> String {
+        match self.kind_of(unit).name() {
+            (_, "") => String::new(),
+            _ if !self.is_unlike() => String::new(),
+            (word, name) => format!(", {word} \"{name}\""),
         }
-    }
-
-    /// The airframe once for each of its pairs, as if all units had that one: for what is said of a pair, which the
-    /// diagnostics of these then name.
-    pub fn of_each_pair(&self) -> Vec<Airframe> {
-        if !self.is_unlike() {
-            return vec![self.clone()];
-        }
-        // The torque of a unit keeps its sign.
-        let alike = |unit: &Unit, pair: &Pair| Unit {
-            pair: 0,
-            upper_spin: match self.spin_sign(unit) > 0.0 {
-                true => pair.upper_spin,
-                false => pair.upper_spin.reversed(),
-            },
-            ..unit.clone()
-        };
-        let view = |(k, pair): (usize, &Pair)| Airframe {
-            pair: pair.clone(),
-            other_pairs: Vec::new(),
-            single_rotors: Vec::new(),
-            units: self.units.iter().map(|unit| alike(unit, pair)).collect(),
-            view: Some(k),
-            ..self.clone()
-        };
-        self.pairs().enumerate().map(view).collect()
-    }
-
-    /// The same airframe with the mean of its pairs in all units: what a mixer has that takes rotors for alike.
-    pub fn with_mean_pair(&self) -> Airframe {
-        let mut of_first = self.of_each_pair().swap_remove(0);
-        let pairs = || self.units.iter().filter(|unit| unit.lower_channel.is_some());
-        let mean = |terms: fn(&Pair) -> &Vec<f64>, term: usize| {
-            let values = pairs().map(|unit| terms(self.pair_of(unit))[term]);
-            values.sum::<f64>() / pairs().count() as f64
-        };
-        if self.is_unlike() && self.has_pairs() {
-            let terms = 0..self.pair.thrust_n.len();
-            of_first.pair.thrust_n = terms
-                .clone()
-                .map(|term| mean(|pair| &pair.thrust_n, term))
-                .collect();
-            of_first.pair.torque_nm = terms.map(|term| mean(|pair| &pair.torque_nm, term)).collect();
-        }
-        of_first
     }
 
     /// Whose pairs they are, where they are not the airframe's own, as a line of saved files says it.
     pub fn borrowed(&self) -> Option<String> {
-        let told: Vec<String> = self.pairs().filter_map(Pair::borrowed).collect();
+        let told: Vec<String> = self.pairs.iter().filter_map(Pair::borrowed).collect();
         (!told.is_empty()).then(|| told.join("; "))
     }
 
-    /// Sign s of a unit's torque in yaw: +1 where its upper rotor spins as on the bench of its pair, else -1.
+    /// Sign s of a unit's torque in yaw: +1 where a pair's upper rotor spins as on its bench, and where a single rotor, whose
+    /// torque counts positive, spins counter-clockwise; else -1.
     pub fn spin_sign(&self, unit: &Unit) -> f64 {
-        unit.spin_sign(self.pair_of(unit).upper_spin)
+        let positive = self
+            .kind_of(unit)
+            .pair()
+            .map_or(Spin::Ccw, |pair| pair.upper_spin);
+        if unit.upper_spin == positive { 1.0 } else { -1.0 }
     }
 
     /// The reference voltage, V; 0 without `[voltage]`, as mixers then ignore it.
@@ -301,7 +240,7 @@ impl Airframe {
     /// `None` where the file has no `[pair.power]`, a unit is a single rotor, or a channel has no throttle.
     pub fn power_w(&self, throttle: &[f64]) -> Option<f64> {
         let of_unit = |unit: &Unit| {
-            let map = self.pair_of(unit).power.as_ref()?;
+            let map = self.kind_of(unit).pair()?.power.as_ref()?;
             let of = |channel: usize| throttle.get(channel).copied();
             Some(map.at([of(unit.upper_channel)?, of(unit.lower_channel?)?]))
         };
@@ -318,21 +257,13 @@ impl Airframe {
 
     /// Whether the file itself has a key like `unit[3].channels`.
     pub fn states(&self, key: &str) -> bool {
-        self.places.contains_key(self.key(key).as_ref())
+        self.places.contains_key(key)
     }
 
     /// Place of a key like `unit[3].channels` in the file, or of the nearest table or array around
     /// it that the file has; else of the name.
     pub fn place(&self, key: &str) -> Option<Range<usize>> {
-        spec::place_in(&self.places, &self.key(key))
-    }
-
-    /// A key as the file has it: `pair` is `pair[1]` in the view of the second of several.
-    fn key<'k>(&self, key: &'k str) -> Cow<'k, str> {
-        match (key.strip_prefix("pair"), self.view) {
-            (Some(rest), Some(k)) => format!("pair[{k}]{rest}").into(),
-            _ => key.into(),
-        }
+        spec::place_in(&self.places, key)
     }
 
     /// A fault that a later stage found in `key`, at its place.
@@ -344,17 +275,7 @@ impl Airframe {
         label: impl Into<String>,
         help: impl Into<String>,
     ) -> Diagnostic {
-        let message = match self.view {
-            // A frame of one pair and single rotors is no view of that pair.
-            Some(_)
-                if !self.pair.name.is_empty()
-                    && (self.single_rotors.is_empty() || key.starts_with("pair")) =>
-            {
-                format!("pair \"{}\": {}", self.pair.name, message.into())
-            }
-            _ => message.into(),
-        };
-        Diagnostic::new(code, self.key(key), self.place(key), message)
+        Diagnostic::new(code, key, self.place(key), message.into())
             .label(label)
             .help(help)
     }
@@ -387,7 +308,7 @@ fn read(table: &DeTable<'_>, faults: &mut Vec<Diagnostic>) -> Option<Airframe> {
     let is_whole = !file.faults.iter().any(|fault| fault.code == Code::Syntax);
     let pair_names = pairs.iter().filter(|_| is_whole).map(|pair| pair.name.clone());
     let pair_names: Vec<String> = pair_names.collect();
-    let single_rotors: Option<Vec<Pair>> = single_rotors.into_iter().collect();
+    let single_rotors: Option<Vec<SingleRotor>> = single_rotors.into_iter().collect();
     let rotor_names = single_rotors.iter().flatten().map(|rotor| rotor.name.clone());
     let rotor_names: Vec<String> = rotor_names.collect();
     let voltage = file.table(&VOLTAGE, correction::read_voltage);
@@ -459,17 +380,12 @@ fn read(table: &DeTable<'_>, faults: &mut Vec<Diagnostic>) -> Option<Airframe> {
         file.faults
             .push(fault.label("for frames of pairs alone").help(help));
     }
-    let is_one_of_a_list = pairs.len() == 1 && places.contains_key("pair[0]");
-    let mut pairs = pairs.into_iter();
     Some(Airframe {
         units: units?,
         name: name?,
         description: description.map(Spanned::into_inner).unwrap_or_default(),
         throttle: throttle?,
-        pair: pairs
-            .next()
-            .or_else(|| single_rotor::two_of(single_rotors.as_ref()?.first()?))?,
-        other_pairs: pairs.collect(),
+        pairs,
         single_rotors: single_rotors?,
         voltage: voltage.flatten(),
         air: air.flatten(),
@@ -477,7 +393,6 @@ fn read(table: &DeTable<'_>, faults: &mut Vec<Diagnostic>) -> Option<Airframe> {
         allocation: allocation.flatten().unwrap_or_default(),
         vehicle: vehicle.flatten(),
         first_angle_deg,
-        view: is_one_of_a_list.then_some(0),
         places,
     })
 }

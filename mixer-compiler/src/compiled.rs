@@ -3,9 +3,9 @@
 use crate::airframe::Airframe;
 use crate::diagnostic::source::Source;
 use crate::inverse::evaluator::Evaluator;
-use crate::model::PairMap;
 use crate::model::effectiveness::Effectiveness;
 use crate::model::injectivity::Injectivity;
+use crate::model::{self, PairMap, Physics};
 use crate::proof::Certificate;
 use crate::proof::residual::Residual;
 use crate::tables::MixerTables;
@@ -22,22 +22,14 @@ macro_rules! compiled {
             $visibility airframe: Airframe,
             /// M and M+.
             $visibility effectiveness: Effectiveness,
-            /// The forward map of a unit at the reference voltage: of the first pair, where units differ.
-            $visibility pair: PairMap,
-            /// Proof that the forward map can be inverted: of the least determinant, where units differ.
-            $visibility injectivity: Injectivity,
-            /// Least idle at which all forward maps can be inverted.
-            $visibility least_idle: f64,
-            /// The chosen evaluator, of all units.
-            $visibility evaluator: Evaluator,
-            /// Largest errors observed of the evaluator's tables, in any unit.
-            $visibility residual: Residual,
+            /// The forward map of each unit at the reference voltage.
+            $visibility maps: Vec<PairMap>,
+            /// What is known of each pair, in the order of the file.
+            $visibility of_pairs: Vec<OfPair>,
             /// Least and largest thrust that is delivered without torque at the reference voltage, N.
             $visibility thrust_range_n: [f32; 2],
-            /// Proven bounds of the evaluator's errors, in any unit.
-            $visibility certificate: Certificate,
-            /// What is known of each pair, in the order of the file.
-            pub(crate) of_pairs: Vec<OfPair>,
+            /// What thrust and torque of any unit may miss at any voltage and density of the ranges, N and N m.
+            $visibility stated: [f64; 2],
             /// Share of the attainable set's area that the sides of the closed form lose, or why the airframe
             /// has no closed form.
             $visibility lost_outside_border: Result<f64, &'static str>,
@@ -70,22 +62,47 @@ impl Compiled {
 
     /// What thrust and torque of a unit may miss at any voltage and density of the ranges, `[N, N m]`: proven.
     pub fn bounds(&self) -> [f64; 2] {
-        self.certificate.stated
+        self.stated
+    }
+
+    /// What throttles give by the airframe file alone.
+    pub fn physics(&self) -> Physics<'_> {
+        Physics {
+            airframe: &self.airframe,
+            maps: &self.maps,
+        }
+    }
+
+    /// [`model::mean`](crate::model::mean) of the units' maps.
+    pub fn mean_map(&self) -> PairMap {
+        model::mean(&self.airframe, &self.maps)
+    }
+
+    /// What holds of all pairs; `None` where no unit is one.
+    pub fn of_all_pairs(&self) -> Option<OfPair> {
+        let (first, others) = self.of_pairs.split_first()?;
+        Some(others.iter().fold(first.clone(), OfPair::and))
     }
 }
 
 /// What is known of a pair.
 #[derive(Clone, Debug)]
-pub(crate) struct OfPair {
-    pub(crate) injectivity: Injectivity,
-    pub(crate) least_idle: f64,
-    pub(crate) residual: Residual,
-    pub(crate) certificate: Certificate,
+pub struct OfPair {
+    /// Proof that the forward map can be inverted.
+    pub injectivity: Injectivity,
+    /// Least idle at which it can be.
+    pub least_idle: f64,
+    /// The chosen evaluator, the same of all pairs.
+    pub evaluator: Evaluator,
+    /// Largest errors observed of the evaluator's tables.
+    pub residual: Residual,
+    /// Proven bounds of the evaluator's errors.
+    pub certificate: Certificate,
 }
 
 impl OfPair {
-    /// Makes this what holds of another pair, too.
-    pub(crate) fn include(&mut self, other: &OfPair) {
+    /// What holds of another pair, too.
+    fn and(mut self, other: &OfPair) -> OfPair {
         if other.injectivity.least_determinant < self.injectivity.least_determinant {
             self.injectivity = other.injectivity;
         }
@@ -101,26 +118,6 @@ impl OfPair {
             own.stated[k] = own.stated[k].max(of.stated[k]);
             self.residual.efforts[k] = self.residual.efforts[k].max(other.residual.efforts[k]);
         }
-    }
-}
-
-impl Compiled {
-    /// The airframe once for each of its pairs, as if all units had that one: for what is said of a pair. M, the range of
-    /// thrust and the closed form stay those of the frame.
-    #[cfg(feature = "unstable")]
-    pub fn of_each_pair(&self) -> Vec<Compiled> {
-        let views = self.airframe.of_each_pair().into_iter().zip(&self.of_pairs);
-        let view = |(k, (airframe, of)): (usize, (Airframe, &OfPair))| Compiled {
-            pair: PairMap::new(&airframe.pair, &airframe.throttle),
-            injectivity: of.injectivity,
-            least_idle: of.least_idle,
-            residual: of.residual,
-            certificate: of.certificate,
-            of_pairs: vec![of.clone()],
-            tables: self.tables.of_pair(k),
-            airframe,
-            ..self.clone()
-        };
-        views.enumerate().map(view).collect()
+        self
     }
 }

@@ -1,12 +1,11 @@
 //! The generated Rust: the tables as constants and one inline mixer function.
 
 use mixer_rt::Wrench;
-use mixer_rt::tables::WithSingleRotors;
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
 use crate::compiled::Compiled;
-use crate::tables::{ClosedFormTable, MixerTables, Part, identifier};
+use crate::tables::{MixerTables, Part, identifier};
 
 /// The module of an airframe.
 pub(crate) fn module(compiled: &Compiled) -> TokenStream {
@@ -169,7 +168,7 @@ fn functions() -> TokenStream {
             setpoint: &rt::Wrench,
             conditions: impl ::core::convert::Into<rt::Conditions>,
         ) -> ::core::result::Result<rt::Mix<CHANNELS>, rt::SetpointError> {
-            tables::mix::<UNITS, CHANNELS, _, _, _>(&TABLES, setpoint, conditions.into(), rt::Health::GOOD)
+            tables::mix::<UNITS, CHANNELS, _, _>(&TABLES, setpoint, conditions.into(), rt::Health::GOOD)
         }
 
         /// [`mix`] with the rotors out that `health` names by channel.
@@ -182,7 +181,7 @@ fn functions() -> TokenStream {
             conditions: impl ::core::convert::Into<rt::Conditions>,
             health: rt::Health,
         ) -> ::core::result::Result<rt::Mix<CHANNELS>, rt::SetpointError> {
-            tables::mix::<UNITS, CHANNELS, _, _, _>(&TABLES, setpoint, conditions.into(), health)
+            tables::mix::<UNITS, CHANNELS, _, _>(&TABLES, setpoint, conditions.into(), health)
         }
     }
 }
@@ -212,23 +211,32 @@ fn module_lines(compiled: &Compiled) -> Vec<String> {
         let rotors = unit.in_words();
         lines.push(format!(
             " * unit {index} at ({x:?}, {y:?}, {z:?}) m, {rotors}{}",
-            airframe.named_pair(unit)
+            airframe.named_kind(unit)
         ));
     }
     lines.push(String::new());
-    lines.push(format!(" Inverse map: {}.", compiled.evaluator.description()));
-    let [f, q] = compiled.certificate.stated.map(crate::diagnostic::rounded_up);
+    let [f, q] = compiled.stated.map(crate::diagnostic::rounded_up);
+    let Some(of_pairs) = compiled.of_all_pairs() else {
+        lines.push(
+            " No unit is a pair. Every mix checks that thrust and torque of each rotor are within".to_owned(),
+        );
+        lines.push(format!(
+            " {f} N and {q} N m of what is asked; else it says what is not delivered."
+        ));
+        return lines;
+    };
+    lines.push(format!(" Inverse map: {}.", of_pairs.evaluator.description()));
     lines.push(format!(
         " Proven: each unit's thrust and torque are within {f} N and {q} N m of what is asked, at every"
     ));
     lines.push(format!(
         " voltage and density and everywhere in the attainable set, rounding in f32 included ({} cells).",
-        compiled.certificate.cells
+        of_pairs.certificate.cells
     ));
-    let [f, q] = compiled.residual.efforts.map(crate::diagnostic::rounded_up);
+    let [f, q] = of_pairs.residual.efforts.map(crate::diagnostic::rounded_up);
     lines.push(format!(
         " Largest residual observed over {} efforts at the reference voltage: {f} N, {q} N m.",
-        compiled.residual.points
+        of_pairs.residual.points
     ));
     lines
 }
@@ -237,68 +245,52 @@ fn module_lines(compiled: &Compiled) -> Vec<String> {
 fn tables(tables: &MixerTables) -> TokenStream {
     let view = tables.view();
     let units = (*view.units).tokens();
-    let (pair, singles, inverse) = (view.pair.tokens(), view.singles.tokens(), view.inverse.tokens());
     let (throttle, rows) = (view.throttle.tokens(), view.row_scale.tokens());
-    let (voltage, air) = (view.voltage.tokens(), view.air.tokens());
-    let (spread, level) = (view.mean_square_slopes.tokens(), view.level_n.tokens());
+    let (voltage, air, level) = (view.voltage.tokens(), view.air.tokens(), view.level_n.tokens());
     let (priorities, is_vertical) = (view.priorities.tokens(), view.is_vertical);
     let (power_bias, tolerance) = (view.power_bias_nm_per_n.tokens(), view.tolerance.tokens());
-    let (basis, inverse_type) = (tables.pair.thrust.type_tokens(), tables.inverse.type_tokens());
-    let has_single_rotors = !tables.single_rotors.is_empty();
-    let (alias, said) = match tables.unlike() {
-        Some(_) => (
-            Some(match has_single_rotors {
-                true => quote!(type Kinds = tables::WithSingleRotors<'static, #basis, #inverse_type>;),
-                false => quote!(type Kinds = tables::Unlike<'static, #basis, #inverse_type>;),
-            }),
-            " What each kind of unit gives, and which unit is which, in place of a closed form of allocation.",
-        ),
-        None => (None, " The closed form of allocation, where there is one."),
+    let [basis, inverse] = match tables.pairs.first() {
+        Some(pair) => [pair.pair.thrust.type_tokens(), pair.inverse.type_tokens()],
+        // No pair: any will do.
+        None => [
+            quote!(tables::Cubic),
+            quote!(tables::PolynomialInverse<[f32; 1], 0>),
+        ],
     };
-    let said = doc(&[said.to_owned()]);
-    let closed_form_table = tables.closed_form.as_ref().map(ClosedFormTable::view);
-    let (closed_form, closed_form_type) = match (&closed_form_table, tables.unlike()) {
-        (Some(table), _) => (Part::tokens(&table), quote!(&tables::ClosedForm<'static>)),
-        (None, Some(unlike)) if has_single_rotors => {
-            let with_single_rotors = WithSingleRotors {
-                unlike,
-                rotors: &tables.single_rotors,
-                passes: tables.passes,
-            };
-            (with_single_rotors.tokens(), quote!(Kinds))
-        }
-        (None, Some(unlike)) => (unlike.tokens(), quote!(Kinds)),
-        (None, None) => (quote!(tables::NoClosedForm), quote!(tables::NoClosedForm)),
+    let has_single_rotors = !tables.single_rotors.is_empty();
+    let (kinds, kinds_type) = match tables.pair_of_all() {
+        Some(pair) => (pair.tokens(), quote!(tables::PairKind<#basis, #inverse>)),
+        None => (
+            view.kinds.tokens(),
+            quote!(tables::Unlike<'static, #basis, #inverse, #has_single_rotors>),
+        ),
+    };
+    let (closed_form, closed_form_type) = match view.closed_form.as_ref() {
+        Some(table) => (Part::tokens(&table), quote!(&tables::ClosedForm<'static>)),
+        None => (quote!(tables::NoClosedForm), quote!(tables::NoClosedForm)),
     };
     quote! {
         /// The units: rows of M+, columns of M, output channels.
         const UNIT_TABLES: [tables::Unit; UNITS] = #units;
-        /// The forward map of a unit: thrust and torque as polynomials of both throttles.
-        const PAIR: tables::Pair<#basis> = #pair;
-        /// Thrust and torque of the upper and of the lower rotor alone.
-        const ROTORS_ALONE: [tables::SingleRotor; 2] = #singles;
-        /// The inverse map of a unit.
-        const INVERSE: #inverse_type = #inverse;
+        type Kinds = #kinds_type;
+        /// What the units give: forward maps, rotors alone, inverse maps.
+        const KINDS: Kinds = #kinds;
         /// How thrust and torque follow the battery's voltage, V.
         const VOLTAGE: ::core::option::Option<tables::Law<'static>> = #voltage;
         /// How they follow the air's density, kg/m3.
         const AIR: ::core::option::Option<tables::Law<'static>> = #air;
-        #alias
-        #said
+        /// The closed form of allocation, where there is one.
         const CLOSED_FORM: #closed_form_type = #closed_form;
 
         /// All tables; see `mixer_rt::tables` for their meaning and units.
         #[doc(hidden)]
-        pub static TABLES: tables::Tables<'static, #basis, #inverse_type, #closed_form_type> = tables::Tables {
+        pub static TABLES: tables::Tables<'static, Kinds, #closed_form_type> = tables::Tables {
             units: &UNIT_TABLES,
-            pair: PAIR,
-            singles: ROTORS_ALONE,
-            inverse: INVERSE,
+            kinds: KINDS,
             throttle: #throttle,
             voltage: VOLTAGE,
             air: AIR,
             row_scale: #rows,
-            mean_square_slopes: #spread,
             level_n: #level,
             is_vertical: #is_vertical,
             priorities: #priorities,

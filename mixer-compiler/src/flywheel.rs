@@ -17,8 +17,8 @@
 
 use serde::Serialize;
 
-use crate::airframe::{Airframe, TYPICAL_EXPONENT};
-use crate::model::PairMap;
+use crate::airframe::{Airframe, GRAVITY, Kind, TYPICAL_EXPONENT, View};
+use crate::model::{PairMap, equal_throttle, maps};
 
 /// Throttle at which a motor has the voltage's exponent that least squares over a bench's map finds: large thrusts weigh
 /// most there. Found on maps of ten systems at two voltages, one after the other simulated.
@@ -58,7 +58,7 @@ pub struct Flywheel {
     pub hover_throttle: f64,
     /// w, rad/s, estimated from the largest thrust, within some 15 %.
     pub speed_rad_s: f64,
-    /// Q, N m: by the slope of the pair's torque as one rotor turns faster and the other slower.
+    /// Q, N m: by its slope over the throttle, of a pair as one rotor turns faster and the other slower.
     pub torque_nm: f64,
     /// T, s.
     pub lead_s: f64,
@@ -67,22 +67,36 @@ pub struct Flywheel {
 }
 
 impl Flywheel {
-    /// A rotor of an airframe of a mass, kg, and of an inertia, kg m2, if that is known; `None` where the vehicle does not hover.
-    pub fn new(airframe: &Airframe, mass_kg: f64, inertia_kg_m2: Option<f64>) -> Option<Flywheel> {
-        // Where units differ, that of the mean pair.
-        let airframe = &airframe.with_mean_pair();
-        let map = PairMap::new(&airframe.pair, &airframe.throttle);
-        let [_, full] = map.range();
-        let upwards: f64 = airframe.units.iter().map(|unit| -unit.axis[2]).sum();
-        let hover_n = mass_kg * crate::airframe::GRAVITY / upwards;
-        let full_n = map.efforts([full; 2])[0];
-        let hover = throttle_of(&map, hover_n).filter(|hover| *hover <= full)?;
-        let [less, more] = [-NEARBY, NEARBY].map(|d| map.efforts([hover - d, hover + d])[1]);
-        let slope = (more - less) / (2.0 * NEARBY);
-        let share = ohmic_share(exponent(airframe), hover);
+    /// A rotor of each kind of unit of an airframe of a mass, kg, of an inertia, kg m2, if that is known; `None` where the
+    /// vehicle does not hover.
+    pub fn of_mass(airframe: &Airframe, mass_kg: f64, inertia_kg_m2: Option<f64>) -> Vec<Option<Flywheel>> {
+        let hover = equal_throttle(airframe, &maps(airframe), mass_kg * GRAVITY);
+        let of_kind = |view: View<'_, Kind<'_>>| Flywheel::at(&view, hover?, inertia_kg_m2);
+        airframe.views().map(of_kind).collect()
+    }
+
+    /// Those of the file's `[vehicle]`; `None` without.
+    pub fn of(airframe: &Airframe) -> Vec<Option<Flywheel>> {
+        match &airframe.vehicle {
+            Some(vehicle) => Flywheel::of_mass(airframe, vehicle.mass_kg, vehicle.rotor_inertia_kg_m2),
+            None => vec![None; airframe.views().count()],
+        }
+    }
+
+    /// A rotor of a kind at the throttle of hover.
+    fn at(view: &View<'_, Kind<'_>>, hover: f64, inertia_kg_m2: Option<f64>) -> Option<Flywheel> {
+        let map = PairMap::of_kind(view.of, &view.throttle);
+        let [hover_n, full_n] = [hover, view.throttle.max].map(|throttle| map.efforts([throttle; 2])[0]);
+        let [_, [by_upper, by_lower]] = map.jacobian([hover; 2]);
+        // The mean slope of a rotor's torque, and the thrust of a unit over that of a rotor alone.
+        let (slope, over_alone) = match view.of {
+            Kind::Pair(_) => (0.5 * (by_lower - by_upper), PAIR_OVER_ALONE),
+            Kind::SingleRotor(_) => (by_upper, 1.0),
+        };
+        let share = ohmic_share(exponent(view), hover);
         // Q goes with w^2, and w with the power 1 / (1 + s) of the throttle.
-        let torque_nm = 0.25 * slope * hover * (1.0 + share);
-        let diameter_m = (full_n / PAIR_OVER_ALONE / LOADING_N_M2).sqrt();
+        let torque_nm = 0.5 * slope * hover * (1.0 + share);
+        let diameter_m = (full_n / over_alone / LOADING_N_M2).sqrt();
         let speed_rad_s = 2.0 * TIP_M_S / diameter_m * (hover_n / full_n).sqrt();
         let mass_kg = MASS_KG_M2 * diameter_m * diameter_m;
         let estimated = ROD * mass_kg * diameter_m * diameter_m;
@@ -98,12 +112,6 @@ impl Flywheel {
             lead_s,
             first_over_steady,
         })
-    }
-
-    /// That of the file's `[vehicle]`; `None` without.
-    pub fn of(airframe: &Airframe) -> Option<Flywheel> {
-        let vehicle = airframe.vehicle.as_ref()?;
-        Flywheel::new(airframe, vehicle.mass_kg, vehicle.rotor_inertia_kg_m2)
     }
 
     /// The same rotor of the inertia that a lag, s, implies.
@@ -122,24 +130,6 @@ impl Flywheel {
     pub fn lag_s(&self) -> f64 {
         self.lead_s / self.first_over_steady
     }
-}
-
-/// Half the difference of throttles at which a slope is taken.
-const NEARBY: f64 = 1e-4;
-
-/// Throttle of both rotors of a pair for a thrust, N; `None` where full throttle gives less.
-fn throttle_of(map: &PairMap, thrust_n: f64) -> Option<f64> {
-    let of = |throttle: f64| map.efforts([throttle; 2])[0];
-    let [mut low, mut high] = [0.0, 1.0];
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        *(if of(middle) < thrust_n {
-            &mut low
-        } else {
-            &mut high
-        }) = middle;
-    }
-    (of(1.0) >= thrust_n).then_some(high)
 }
 
 /// Power of the voltage that the airframe's thrust follows, a usual one without `[voltage]`.
@@ -185,7 +175,10 @@ mod tests {
             ("x8-16in-quartic", 6.5, 16.2),
             ("x8-22in-cubic", 10.0, 22.0),
         ] {
-            let rotor = Flywheel::new(&airframe(name), mass_kg, None).unwrap();
+            let [rotor] = Flywheel::of_mass(&airframe(name), mass_kg, None)[..] else {
+                panic!("one kind");
+            };
+            let rotor = rotor.unwrap();
             let found = rotor.estimated_diameter_m.unwrap() / (0.0254 * inch);
             assert!((found - 1.0).abs() < 0.09, "{name}: {found}");
             assert!((0.2..0.6).contains(&rotor.lead_s), "{name}: {rotor:?}");
@@ -194,7 +187,7 @@ mod tests {
 
     #[test]
     fn of_inertia_and_lag_one_gives_the_other() {
-        let of = |inertia| Flywheel::new(&airframe("x8-16in-quartic"), 6.5, Some(inertia)).unwrap();
+        let of = |inertia| Flywheel::of_mass(&airframe("x8-16in-quartic"), 6.5, Some(inertia))[0].unwrap();
         let (rotor, heavy) = (of(3e-4), of(6e-4));
         assert!((heavy.lead_s / rotor.lead_s - 2.0).abs() < 1e-12);
         let same = rotor.with_lag(heavy.lag_s());
@@ -208,7 +201,10 @@ mod tests {
             (1.0..1.34).contains(&(rotor.torque_nm / of_thrust_nm)),
             "{rotor:?}"
         );
-        assert_eq!(Flywheel::new(&airframe("x8-16in-quartic"), 40.0, None), None);
+        assert_eq!(
+            Flywheel::of_mass(&airframe("x8-16in-quartic"), 40.0, None),
+            [None]
+        );
     }
 
     #[test]

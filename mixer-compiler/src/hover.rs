@@ -60,15 +60,15 @@ pub struct HoverAt {
     pub upper_throttle: Option<[f64; 2]>,
     /// The outputs that have them.
     pub upper_outputs: Option<[usize; 2]>,
-    /// Least and greatest throttle of the lower rotors, likewise.
+    /// Least and greatest throttle of the lower rotors, likewise; `None` where all units are single rotors.
     pub lower_throttle: Option<[f64; 2]>,
     /// The outputs that have them.
     pub lower_outputs: Option<[usize; 2]>,
-    /// Least throttles `[upper, lower]` where the pair gives one standard deviation of
-    /// `[pair.uncertainty]` more thrust than its model, and greatest ones where it gives as much less; `None`
+    /// Least throttles, of the upper and of the lower rotors, where units give one standard deviation of
+    /// `[pair.uncertainty]` more thrust than their model, and greatest ones where they give as much less; `None`
     /// without that table, or where the weight is then not carried.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub throttle_band: Option<[[f64; 2]; 2]>,
+    pub throttle_band: Option<[Vec<f64>; 2]>,
     /// Largest torques `[negative, positive]` about the served axes that are delivered with the
     /// weight, each alone, N m.
     pub margins: Vec<Margin>,
@@ -204,7 +204,7 @@ fn limits(compiled: &Compiled) -> Option<Diagnostic> {
     let at = HoverAt::new(compiled, airframe.weight_n()?, reference_v);
     let room = NEXT_TO * (max - min);
     let ends = at
-        .layers()?
+        .layers()
         .into_iter()
         .flat_map(|([least, greatest], [lowest, highest])| {
             let idle = (least - min < room).then_some(("idle", min, least, lowest));
@@ -226,7 +226,7 @@ fn margins(compiled: &Compiled) -> Vec<Diagnostic> {
     let airframe = &compiled.airframe;
     let Some(weight_n) = airframe
         .weight_n()
-        .filter(|_| airframe.pairs().all(|pair| pair.uncertainty.is_some()))
+        .filter(|_| airframe.views().all(|view| view.of.uncertainty().is_some()))
     else {
         return Vec::new();
     };
@@ -254,13 +254,12 @@ fn margins(compiled: &Compiled) -> Vec<Diagnostic> {
 }
 
 impl HoverAt {
-    /// Least and greatest throttle of the upper and of the lower rotors, each with its outputs; `None` where the weight is not
-    /// carried.
-    pub fn layers(&self) -> Option<[([f64; 2], [usize; 2]); 2]> {
-        Some([
-            (self.upper_throttle?, self.upper_outputs?),
-            (self.lower_throttle?, self.lower_outputs?),
-        ])
+    /// Least and greatest throttle of the upper rotors and, where there are any, of the lower ones, each with its outputs; empty
+    /// where the weight is not carried.
+    pub fn layers(&self) -> Vec<([f64; 2], [usize; 2])> {
+        let upper = self.upper_throttle.zip(self.upper_outputs);
+        let lower = self.lower_throttle.zip(self.lower_outputs);
+        upper.into_iter().chain(lower).collect()
     }
 
     /// What is left beside a thrust of `weight_n` N at a voltage, V; any where the airframe ignores
@@ -288,23 +287,25 @@ impl HoverAt {
                 rotor_out: Vec::new(),
             };
         };
-        // Outputs of the upper (0) and of the lower (1) rotors that have the least and the greatest throttle, single ones
+        // Outputs of the upper and of the lower rotors that have the least and the greatest throttle, single ones
         // among the upper.
-        let extremes = |throttles: &[f32]| {
-            [0, 1].map(|layer| {
+        let extremes = |throttles: &[f32]| -> Vec<[usize; 2]> {
+            let of_layer = |layer| {
                 let units = || compiled.airframe.units.iter();
                 let outputs = || units().filter_map(|unit| unit.channels().nth(layer));
                 let by_throttle = |a: &usize, b: &usize| throttles[*a].total_cmp(&throttles[*b]);
-                [outputs().min_by(by_throttle), outputs().max_by(by_throttle)].map(Option::unwrap_or_default)
-            })
+                Some([outputs().min_by(by_throttle)?, outputs().max_by(by_throttle)?])
+            };
+            (0..2).filter_map(of_layer).collect()
         };
         let outputs = extremes(&throttles);
-        let [upper, lower] = outputs.map(|of| of.map(|output| f64::from(throttles[output])));
+        let at = |of: &[usize; 2]| of.map(|output| f64::from(throttles[output]));
         let band = |axis: Axis| band(compiled, axis, voltage_v);
         let throttle_band = band(Axis::Thrust).and_then(|off| {
             let at = |thrust: f64, end: usize| {
                 let throttles = mix([0.0, 0.0, 0.0, thrust])?;
-                Some(extremes(&throttles).map(|of| f64::from(throttles[of[end]])))
+                let of = |of: &[usize; 2]| f64::from(throttles[of[end]]);
+                Some(extremes(&throttles).iter().map(of).collect())
             };
             Some([at(weight_n - off, 0)?, at(weight_n + off, 1)?])
         });
@@ -326,10 +327,10 @@ impl HoverAt {
         });
         HoverAt {
             voltage_v,
-            upper_throttle: Some(upper),
-            upper_outputs: Some(outputs[0]),
-            lower_throttle: Some(lower),
-            lower_outputs: Some(outputs[1]),
+            upper_throttle: outputs.first().map(at),
+            upper_outputs: outputs.first().copied(),
+            lower_throttle: outputs.get(1).map(at),
+            lower_outputs: outputs.get(1).copied(),
             throttle_band,
             margins: margins.collect(),
             rotor_out: RotorOut::of(compiled, weight_n, voltage_v),
@@ -353,7 +354,7 @@ pub fn band(compiled: &Compiled, axis: Axis, voltage_v: Option<f64>) -> Option<f
     let [k_f, k_q] = voltage_v.map_or([1.0; 2], |volts| airframe.voltage_factors(volts));
     let units = airframe.units.iter().zip(scales(airframe, [1.0; 2]));
     let off = units.map(|(unit, [f, q])| {
-        let uncertainty = airframe.pair_of(unit).uncertainty.as_ref()?;
+        let uncertainty = airframe.kind_of(unit).uncertainty()?;
         Some([
             0.01 * uncertainty.thrust_percent * k_f * f,
             0.01 * uncertainty.torque_percent * k_q * q,

@@ -41,11 +41,10 @@ use modules::*;
 #[cfg(feature = "unstable")]
 pub use modules::*;
 
-use airframe::Airframe;
+use airframe::{Airframe, Pair, View};
 use allocation::{closed_form, thrust_range};
 use model::PairMap;
 use model::effectiveness::Effectiveness;
-use model::feedback::Feedback;
 use model::injectivity::{self, Injectivity};
 use model::law::CorrectionTables;
 use proc_macro2::TokenStream;
@@ -55,9 +54,11 @@ use tables::{MixerTables, Parts};
 pub use crate::diagnostic::source::Source;
 pub use crate::diagnostic::{Code, Diagnostic, Diagnostics, Record, Severity};
 pub use compiled::Compiled;
+#[cfg(not(feature = "unstable"))]
 use compiled::OfPair;
 #[cfg(feature = "unstable")]
 pub use {
+    compiled::OfPair,
     inverse::evaluator,
     plausible::{ARDUPILOT_MOST_SPIN_MIN, symmetry},
     proof::{Certificate, residual::Residual},
@@ -79,39 +80,28 @@ pub fn compile(source: &Source) -> Result<Compiled, Diagnostics> {
 
 fn compile_airframe(source: &Source, airframe: Airframe) -> Result<Compiled, Vec<Diagnostic>> {
     let model = Model::new(airframe)?;
-    let selected = selection::select(&model.airframes, &model.corrections)?;
-    let of_pairs = |k: usize| selected.iter().map(move |of| of.certificate.stated[k]);
-    let of_pairs = [0, 1].map(|k| of_pairs(k).fold(0.0, f64::max));
-    let feedback = Feedback::new(&model.airframe, &model.effectiveness, of_pairs);
-    feedback.check(&model.airframe)?;
-    let (tables, lost_outside_border) = model.tables(&selected, &feedback);
+    let views: Vec<_> = model.airframe.pair_views().collect();
+    let selected = selection::select(&views, &model.corrections)?;
+    let (tables, stated, lost_outside_border) = model.tables(&views, &selected);
     let thrust_range_n = thrust_range::thrust_range(&model.airframe, &tables)?;
     thrust_range::check_ends(&model.airframe, &tables, thrust_range_n)?;
-    let of_pairs = model.invertible.iter().zip(&selected);
+    drop(views);
+    let of_pairs = model.invertible.into_iter().zip(selected);
     let of_pairs = of_pairs.map(|((injectivity, least_idle), selected)| OfPair {
-        injectivity: *injectivity,
-        least_idle: *least_idle,
+        injectivity,
+        least_idle,
+        evaluator: selected.map.inverse.evaluator,
         residual: selected.residual,
         certificate: selected.certificate,
     });
-    let of_pairs: Vec<OfPair> = of_pairs.collect();
-    let (mut whole, others) = (of_pairs[0].clone(), &of_pairs[1..]);
-    for other in others {
-        whole.include(other);
-    }
-    whole.certificate.stated = feedback.stated;
     let compiled = Compiled {
         source: source.clone(),
-        pair: PairMap::new(&model.airframe.pair, &model.airframe.throttle),
+        maps: model.maps,
         airframe: model.airframe,
         effectiveness: model.effectiveness,
-        injectivity: whole.injectivity,
-        least_idle: whole.least_idle,
-        evaluator: selected[0].map.inverse.evaluator,
-        residual: whole.residual,
+        of_pairs: of_pairs.collect(),
         thrust_range_n,
-        certificate: whole.certificate,
-        of_pairs,
+        stated,
         lost_outside_border,
         tables,
     };
@@ -131,8 +121,8 @@ pub fn lint(compiled: &Compiled) -> Diagnostics {
 /// The mathematics of an airframe: what is known before an inverse is fitted.
 struct Model {
     airframe: Airframe,
-    /// The same for each of its pairs.
-    airframes: Vec<Airframe>,
+    /// The forward map of each unit.
+    maps: Vec<PairMap>,
     effectiveness: Effectiveness,
     /// Of each pair the proof that it can be inverted, and the least idle.
     invertible: Vec<(Injectivity, f64)>,
@@ -141,64 +131,60 @@ struct Model {
 
 impl Model {
     fn new(airframe: Airframe) -> Result<Model, Vec<Diagnostic>> {
-        let airframes = airframe.of_each_pair();
         let effectiveness = Effectiveness::new(&airframe).and_then(|effectiveness| {
             plausible::check_authority(&airframe, &effectiveness)?;
             Ok(effectiveness)
         });
         let (mut invertible, mut tolerances) = (Ok(Vec::new()), Ok(()));
-        for airframe in &airframes {
-            let proven = injectivity::prove(airframe);
+        for view in airframe.pair_views() {
+            let proven = injectivity::prove(&view);
             invertible = gather(invertible, proven, Ok(())).map(|(mut all, proven, ())| {
                 all.push(proven);
                 all
             });
-            tolerances = gather(tolerances, plausible::check_tolerances(airframe), Ok(())).map(|_| ());
+        }
+        for view in airframe.views() {
+            tolerances = gather(tolerances, plausible::check_tolerances(&view), Ok(())).map(|_| ());
         }
         let (effectiveness, invertible, ()) = gather(effectiveness, invertible, tolerances)?;
         Ok(Model {
             corrections: CorrectionTables::new(&airframe),
+            maps: model::maps(&airframe),
             airframe,
-            airframes,
             effectiveness,
             invertible,
         })
     }
 
-    /// The tables, and the share of the attainable set's area that the sides of the closed form lose,
-    /// or why there is none.
-    fn tables(&self, selected: &[Selected], feedback: &Feedback) -> (MixerTables, Result<f64, &'static str>) {
+    /// The tables, what thrust and torque of a unit may miss, N and N m, and the share of the attainable set's area that the
+    /// sides of the closed form lose, or why there is none.
+    fn tables(
+        &self,
+        views: &[View<'_, &Pair>],
+        selected: &[Selected],
+    ) -> (MixerTables, [f64; 2], Result<f64, &'static str>) {
         let Model {
             airframe,
-            airframes,
             effectiveness,
             corrections,
             ..
         } = self;
+        let (tolerance, stated) = selection::tolerance(airframe, effectiveness, corrections, views, selected);
         let parts = Parts {
             airframe,
-            airframes,
             effectiveness,
             corrections,
-            passes: feedback.passes,
             maps: selected.iter().map(|selected| &selected.map).collect(),
-            tolerance: selection::tolerance(
-                airframe,
-                effectiveness,
-                corrections,
-                airframes,
-                selected,
-                feedback,
-            ),
+            tolerance,
         };
-        let pair = PairMap::new(&airframe.pair, &airframe.throttle);
-        let (closed_form, lost_outside_border) = match closed_form::table(airframe, effectiveness, &pair) {
+        let (closed_form, lost_outside_border) = match closed_form::table(airframe, effectiveness, &self.maps)
+        {
             Ok((table, lost)) => (Some(table), Ok(lost)),
             Err(reason) => (None, Err(reason)),
         };
         let mut tables = MixerTables::new(&parts, closed_form);
         tables.level_n = thrust_range::level(airframe, &tables);
-        (tables, lost_outside_border)
+        (tables, stated, lost_outside_border)
     }
 }
 
@@ -289,12 +275,7 @@ impl Compiled {
         scale::Rotors {
             airframe: &self.airframe,
             effectiveness: &self.effectiveness,
-            maps: {
-                let pairs = self.airframe.units.iter().map(|unit| self.airframe.pair_of(unit));
-                pairs
-                    .map(|pair| PairMap::new(pair, &self.airframe.throttle))
-                    .collect()
-            },
+            maps: &self.maps,
             voltage_v,
         }
     }

@@ -1,11 +1,10 @@
-//! The mathematics of one pair and of the frame: what is known before anything is fitted.
+//! The mathematics of one unit and of the frame: what is known before anything is fitted.
 //!
 //! `polynomial` is a tool; `pair_map` is the forward map, `injectivity` the proof that it can be
 //! inverted, `effectiveness` M and M+ by `pseudo_inverse`, `law` the factors of voltage and
 //! density, `physics` the wrench of given throttles.
 
 pub mod effectiveness;
-pub(crate) mod feedback;
 pub mod injectivity;
 pub mod law;
 mod pair_map;
@@ -14,7 +13,7 @@ pub mod polynomial;
 pub mod pseudo_inverse;
 pub mod wake;
 
-pub use self::pair_map::{PairMap, scales};
+pub use self::pair_map::{PairMap, equal_throttle, maps, mean, scales};
 pub use self::physics::Physics;
 
 /// The range of torque per thrust, m, beyond which no propeller is: open ones of 4 to 40 inch with an ample

@@ -1,6 +1,6 @@
 //! Warnings: values that are possible and probably mistakes. A table of rules, all broken ones told.
 //!
-//! A rule compares a value with what propellers, frames and packs are like. Its limits are chosen
+//! Every rule says what it is of: each pair, each kind of unit, or the frame. A rule compares a value with what propellers, frames and packs are like. Its limits are chosen
 //! so that no file in `airframes/` warns and none of the fits of real bench maps does
 //! (`MIXER_BENCH_DATA=.. cargo nextest run -p cargo-mixer maps_warn`), while the mistakes that it
 //! is for lie far outside: a wrong unit is a factor of four at least.
@@ -17,44 +17,50 @@ mod vehicle;
 
 pub(crate) use limits::{check_authority, check_tolerances};
 pub use pair::ARDUPILOT_MOST_SPIN_MIN;
-use rule::{Facts, Rule};
+use rule::{Facts, KindFacts, Rule};
 
-use crate::airframe::Airframe;
+use crate::airframe::{Airframe, Kind, Pair};
 use crate::compiled::Compiled;
 use crate::diagnostic::Diagnostic;
 use crate::model::effectiveness::Effectiveness;
 
-/// What the rules of a function are of: each pair, or the frame.
-enum Of {
-    Pair,
-    Frame,
+/// The rules of one part of an airframe, by what they are of.
+enum Rules {
+    /// Each pair.
+    OfPairs(fn(&KindFacts<'_>, &Pair) -> Vec<Rule>),
+    /// Each kind of unit: pairs and single rotors.
+    OfKinds(fn(&KindFacts<'_>) -> Vec<Rule>),
+    /// The frame.
+    OfFrame(fn(&Facts<'_>) -> Vec<Rule>),
 }
 
-/// The rules of one part of an airframe.
-type Part = fn(&Facts<'_>) -> Vec<Rule>;
+use Rules::{OfFrame, OfKinds, OfPairs};
 
 /// All rules, those that may be the reason of others before these.
-const RULES: [(Of, Part); 20] = [
-    (Of::Pair, pair::borrowed),
-    (Of::Pair, pair::units),
-    (Of::Pair, rotors::order),
-    (Of::Pair, pair::thrust),
-    (Of::Pair, rotors::sizes),
-    (Of::Pair, pair::shape),
-    (Of::Pair, pair::power),
-    (Of::Frame, geometry::odd_place),
-    (Of::Frame, geometry::arms),
-    (Of::Frame, geometry::radians),
-    (Of::Frame, geometry::centre_of_gravity),
-    (Of::Frame, geometry::outputs),
-    (Of::Frame, supply::voltage),
-    (Of::Frame, supply::air),
-    (Of::Pair, limits::wide_tolerances),
-    (Of::Frame, allocation::yaw),
-    (Of::Pair, allocation::power_bias),
-    (Of::Frame, allocation::idle_power_bias),
-    (Of::Frame, vehicle::hover),
-    (Of::Pair, vehicle::rotor_inertia),
+const RULES: [Rules; 23] = [
+    OfPairs(pair::borrowed),
+    OfKinds(pair::units),
+    OfPairs(rotors::order),
+    OfPairs(pair::wake),
+    OfKinds(pair::idle),
+    OfFrame(pair::spin_min),
+    OfPairs(rotors::sizes),
+    OfKinds(pair::growth),
+    OfPairs(pair::left),
+    OfPairs(pair::power),
+    OfFrame(geometry::odd_place),
+    OfFrame(geometry::arms),
+    OfFrame(geometry::radians),
+    OfFrame(geometry::centre_of_gravity),
+    OfFrame(geometry::outputs),
+    OfFrame(supply::voltage),
+    OfFrame(supply::air),
+    OfKinds(limits::wide_tolerances),
+    OfFrame(allocation::yaw),
+    OfPairs(allocation::power_bias),
+    OfFrame(allocation::idle_power_bias),
+    OfFrame(vehicle::hover),
+    OfFrame(vehicle::rotor_inertia),
 ];
 
 /// Warnings of an airframe that compiles.
@@ -73,32 +79,44 @@ pub(crate) fn warnings_of_refused(airframe: &Airframe) -> Vec<Diagnostic> {
 
 /// `compiled` has M and the range of level thrust; `None` where the airframe is refused.
 fn check(airframe: &Airframe, compiled: Option<(&Effectiveness, [f64; 2])>) -> Vec<Diagnostic> {
-    let mut found = Vec::new();
-    let mut tell = |airframe: &Airframe, is_of: &dyn Fn(&Of) -> bool| {
-        let facts = Facts::new(airframe, compiled);
-        let mut own = if airframe.is_unlike() {
-            found.clone()
-        } else {
-            Vec::new()
-        };
-        let told = own.len();
-        // A map without thrust or torque has faults enough.
-        if facts.scale.iter().all(|effort| *effort > 0.0) {
-            for (_, rules) in RULES.iter().filter(|(of, _)| is_of(of)) {
-                for rule in rules(&facts) {
-                    rule.check(airframe, &mut own);
+    let kinds: Vec<KindFacts<'_>> = airframe
+        .views()
+        .map(|view| KindFacts::new(view, compiled.is_none()))
+        .collect();
+    let frame = Facts::new(airframe, &kinds, compiled);
+    // With each warning the kind that it is of. It explains no warning of another kind.
+    let mut found: Vec<(Option<usize>, Diagnostic)> = Vec::new();
+    let mut tell = |of: Option<usize>, rules: Vec<Rule>| {
+        for rule in rules {
+            let is_reason = |(whose, told): &(Option<usize>, Diagnostic)| {
+                rule.explains(told) && (of.is_none() || whose.is_none() || *whose == of)
+            };
+            if found.iter().any(is_reason) {
+                continue;
+            }
+            let told = match of {
+                Some(kind) => rule.told_of(&kinds[kind].view),
+                None => rule.told(airframe),
+            };
+            found.extend(told.map(|told| (of, told)));
+        }
+    };
+    for rules in &RULES {
+        match rules {
+            // A map without thrust or torque has faults enough.
+            OfFrame(_) if !frame.scale.iter().all(|effort| *effort > 0.0) => {}
+            OfFrame(rules) => tell(None, rules(&frame)),
+            OfPairs(_) | OfKinds(_) => {
+                for (index, facts) in kinds.iter().enumerate() {
+                    match (rules, facts.view.of) {
+                        _ if !facts.scale.iter().all(|effort| *effort > 0.0) => {}
+                        (OfKinds(rules), _) => tell(Some(index), rules(facts)),
+                        (OfPairs(rules), Kind::Pair(pair)) => tell(Some(index), rules(facts, pair)),
+                        _ => {}
+                    }
                 }
             }
         }
-        found.extend(own.split_off(told));
-    };
-    if !airframe.is_unlike() {
-        tell(airframe, &|_| true);
-        return found;
     }
-    for of_pair in airframe.of_each_pair().iter().filter(|_| airframe.has_pairs()) {
-        tell(of_pair, &|of| matches!(of, Of::Pair));
-    }
-    tell(airframe, &|of| matches!(of, Of::Frame));
-    found
+    found.into_iter().map(|(_, told)| told).collect()
 }

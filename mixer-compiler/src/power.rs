@@ -7,7 +7,6 @@ use serde::Serialize;
 use crate::airframe::Unit;
 use crate::compiled::Compiled;
 use crate::diagnostic::{Code, Diagnostic, number, rounded};
-use crate::model::Physics;
 use crate::tables::MixerTables;
 
 /// Share of the largest bare thrust at which vehicles without a mass are looked at.
@@ -97,19 +96,16 @@ fn at(compiled: &Compiled, tables: &MixerTables, thrust_n: f64) -> Option<(f64, 
     };
     let airframe = &compiled.airframe;
     let (throttle, _, saturation) = tables.mix(&setpoint, airframe.reference_v() as f32).ok()?;
-    let physics = Physics {
-        airframe,
-        map: &compiled.pair,
-    };
+    let physics = compiled.physics();
     let thrust = |is_out: [bool; 2]| -> f64 {
-        let of_unit = |unit: &Unit| {
+        let of_unit = |(index, unit): (usize, &Unit)| {
             let out = unit.channels().zip(is_out).filter(|(_, is_out)| *is_out);
             let health = out.fold(Health::GOOD, |health, (channel, _)| {
                 health.with_failed(channel as u8)
             });
-            physics.efforts(unit, &throttle, health)[0]
+            physics.efforts(index, &throttle, health)[0]
         };
-        airframe.units.iter().map(of_unit).sum()
+        airframe.units.iter().enumerate().map(of_unit).sum()
     };
     let all = thrust([false; 2]);
     let stop = [[true, false], [false, true]].map(|is_out| 100.0 * (1.0 - thrust(is_out) / all));

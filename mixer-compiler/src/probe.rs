@@ -15,7 +15,7 @@
 //! A wrench is delivered, or flagged and, with one rotor out at most, sound: no torque reversed or exceeded (with a rotor out
 //! yaw may be), the direction of (roll, pitch) kept, with airmode disabled and all rotors no more thrust than asked, and with
 //! a rotor out no thrust given up for yaw. It has to be delivered where the throttles of least norm are well inside their
-//! range. The physics ([`Physics`]) know nothing of M: they add forces and torques unit by unit.
+//! range. The physics ([`Compiled::physics`]) know nothing of M: they add forces and torques unit by unit.
 
 mod border;
 
@@ -25,7 +25,7 @@ use mixer_rt::{Axis, Conditions, Health, Saturation, Wrench};
 use crate::airframe::Correction;
 use crate::compiled::Compiled;
 use crate::diagnostic::{Code, Diagnostic};
-use crate::model::{Physics, scales};
+use crate::model::scales;
 
 /// Share of an axis' authority by which a flagged wrench may be exceeded, reversed or off its
 /// direction. Faults of the tables are off by more. Curves of single rotors, and level flight of tilted
@@ -69,7 +69,7 @@ const MOST_PAIRS: usize = 28;
 /// # Errors
 /// The first one that fails: a fault of the compiler.
 pub(crate) fn run(compiled: &Compiled) -> Result<(), Vec<Diagnostic>> {
-    border::check(compiled, compiled.pair.scale())
+    border::check(compiled)
         .and_then(|()| probe_whole(compiled))
         .and_then(|()| probe_rotors_out(compiled))
         .map_err(|message| {
@@ -219,21 +219,20 @@ impl<'a> At<'a> {
     }
 
     fn answer(&self, asked: [f32; 4]) -> Result<Delivered<'_>, String> {
-        let Compiled {
-            airframe,
-            pair: map,
-            tables,
-            ..
-        } = self.compiled;
         let [voltage_v, density_kg_m3] = self.conditions.map(|x| x as f32);
         let conditions = Conditions::at_voltage(voltage_v).in_air(density_kg_m3);
-        let (throttle, achieved, saturation) = tables
+        let (throttle, achieved, saturation) = self
+            .compiled
+            .tables
             .mix_with_health(&Wrench::from_array(asked), conditions, self.health)
             .map_err(|error| error.to_string())?;
         Ok(Delivered {
             at: self,
             asked: asked.map(f64::from),
-            given: Physics { airframe, map }.wrench(&throttle, self.factors, self.health),
+            given: self
+                .compiled
+                .physics()
+                .wrench(&throttle, self.factors, self.health),
             throttle,
             achieved: achieved.to_array().map(f64::from),
             saturation,

@@ -17,7 +17,7 @@ mod taylor;
 
 use std::collections::BinaryHeap;
 
-use crate::airframe::Airframe;
+use crate::airframe::{Pair, View};
 use crate::proof::residual::Residual;
 use crate::tables::UnitMap;
 use cell::{Subject, ThrottleCell};
@@ -91,16 +91,16 @@ pub(crate) enum Patience {
 /// Proves a bound of the errors of the emitted tables. Cells are halved until no bound at the reference
 /// voltage is above `aim` (`[N, N m]`), or the work allowed is done.
 pub(crate) fn prove(
-    airframe: &Airframe,
+    view: &View<'_, &Pair>,
     map: &UnitMap,
     correction: &CorrectionBounds,
     aim: [f64; 2],
     patience: Patience,
 ) -> Certificate {
-    let inverse = &airframe.inverse;
+    let inverse = &view.inverse;
     let tolerance = inverse.tolerances();
-    let subject = Subject::new(airframe, map, correction);
-    let whole = ThrottleCell::grid([airframe.throttle.min, airframe.throttle.max], START);
+    let subject = Subject::new(view, map, correction);
+    let whole = ThrottleCell::grid([view.throttle.min, view.throttle.max], START);
     let mut cells = whole.len();
     let mut open: BinaryHeap<Open> = whole
         .into_iter()
@@ -143,12 +143,10 @@ pub(crate) fn prove(
 /// How far the efforts that the runtime computes of its throttles may be from those of the file's
 /// map, and the efforts that the inverse is given from those that were asked: `[N, N m]` at the
 /// reference voltage.
-pub(crate) fn rounding(airframe: &Airframe, map: &UnitMap, correction: &CorrectionBounds) -> [f64; 2] {
-    let subject = Subject::new(airframe, map, correction);
+pub(crate) fn rounding(view: &View<'_, &Pair>, map: &UnitMap, correction: &CorrectionBounds) -> [f64; 2] {
+    let subject = Subject::new(view, map, correction);
     let mut largest = [0.0f64; 2];
-    for ThrottleCell { centre, half } in
-        ThrottleCell::grid([airframe.throttle.min, airframe.throttle.max], START)
-    {
+    for ThrottleCell { centre, half } in ThrottleCell::grid([view.throttle.min, view.throttle.max], START) {
         let at = [0, 1].map(|k: usize| Taylor::coordinate(centre[k], half[k], k == 1));
         for (k, efforts) in map.pair.efforts(at).into_iter().enumerate() {
             let asked = efforts.magnitude() * subject.input[k];
@@ -208,8 +206,8 @@ impl PartialEq for Open {
 impl Eq for Open {}
 
 impl<'a> Subject<'a> {
-    fn new(airframe: &Airframe, map: &'a UnitMap, correction: &CorrectionBounds) -> Self {
-        let (pair, basis) = (&airframe.pair, airframe.pair.basis);
+    fn new(view: &View<'_, &Pair>, map: &'a UnitMap, correction: &CorrectionBounds) -> Self {
+        let (pair, basis) = (view.of, view.of.basis);
         let gap = |terms: &[f64], rounded: &[f32]| {
             let (mut value, mut derivative) = (0.0, 0.0);
             for ((&(i, j), &term), &rounded) in basis.exponents().iter().zip(terms).zip(rounded) {

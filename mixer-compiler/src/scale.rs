@@ -52,9 +52,9 @@ use mixer_rt::Wrench;
 use nalgebra::DMatrix;
 
 use crate::airframe::{Airframe, Axis, Spin};
-use crate::model::PairMap;
 use crate::model::effectiveness::Effectiveness;
 use crate::model::pseudo_inverse::PseudoInverse;
+use crate::model::{PairMap, equal_throttle};
 
 /// Below this share of a column's largest entry a rotor has no part in an axis: rounding of the
 /// decomposition.
@@ -69,15 +69,12 @@ const BETAFLIGHT_RANGE: f64 = 2.0;
 /// Half the distance of a pair's rotors along their axis, m. Any will do: there a rotor has no lever.
 const LAYER_M: f64 = 0.05;
 
-/// Halvings of the throttle range in the search for hover: to the rounding of f64.
-const HALVINGS: usize = 52;
-
 /// Rotors as flight stacks see them, at one voltage.
 pub(crate) struct Rotors<'a> {
     pub(crate) airframe: &'a Airframe,
     pub(crate) effectiveness: &'a Effectiveness,
     /// The map of each unit.
-    pub(crate) maps: Vec<PairMap>,
+    pub(crate) maps: &'a [PairMap],
     /// V; the reference voltage where the airframe has no correction.
     pub(crate) voltage_v: f64,
 }
@@ -271,12 +268,11 @@ impl Rotors<'_> {
             let (axis, i) = (axes[row] as usize, rotor % n);
             let [thrust, torque] = efforts(i);
             let (by_thrust, by_torque) = (thrust * matrix[(axis, i)], torque * matrix[(axis, n + i)]);
-            if rotor < n {
-                by_thrust - by_torque
-            } else if self.airframe.units[i].lower_channel.is_some() {
-                by_thrust + by_torque
-            } else {
-                0.0
+            // The torque of a single rotor counts positive, that of an upper one negative.
+            match (rotor < n, self.airframe.units[i].lower_channel) {
+                (true, Some(_)) => by_thrust - by_torque,
+                (false, None) => 0.0,
+                _ => by_thrust + by_torque,
             }
         })
     }
@@ -294,24 +290,19 @@ impl Rotors<'_> {
     pub(crate) fn per_rotor(&self, unit: usize) -> [f64; 2] {
         let (map, [min, max]) = (&self.maps[unit], self.range());
         let [k_f, k_q] = self.airframe.voltage_factors(self.voltage_v);
-        if let Some(curve) = self.airframe.curve_of(&self.airframe.units[unit]) {
-            // Its torque has the sign of an upper rotor.
-            let [full, torque] = curve.efforts(max);
-            let torque = self.hover_throttle().map_or(torque, |h| {
-                let [rise, by_t] = curve.slopes(h);
-                by_t * full / rise
-            });
-            return [full * k_f, -torque * k_q];
-        }
-        let full = map.efforts([max, max])[0];
+        let [full, torque] = map.efforts([max, max]);
+        let is_single = self.airframe.units[unit].lower_channel.is_none();
         let torque = match self.hover_throttle() {
             Some(h) => {
                 let [[f_u, f_l], [q_u, q_l]] = map.jacobian([h, h]);
-                (q_l - q_u) * full / (f_u + f_l)
+                let slope = if is_single { q_u } else { q_l - q_u };
+                slope * full / (f_u + f_l)
             }
+            None if is_single => torque,
             None => map.efforts([min, max])[1] - map.efforts([max, min])[1],
         };
-        [0.5 * full * k_f, 0.5 * torque * k_q]
+        let rotors = self.rotors_of(unit);
+        [full * k_f / rotors, torque * k_q / rotors]
     }
 
     /// Slope in hover of the share of the largest thrust over the throttle, both rotors alike: what a stack's loop gain is
@@ -335,40 +326,8 @@ impl Rotors<'_> {
 
     /// Throttle of all rotors that carries the weight; `None` without a mass, or where none does.
     pub(crate) fn hover_throttle(&self) -> Option<f64> {
-        let weight_n = self.airframe.weight_n()?;
-        let [k_f, k_q] = self.airframe.voltage_factors(self.voltage_v);
-        let matrix = &self.effectiveness.matrix;
-        let (row, n) = (Axis::Thrust as usize, self.airframe.units.len());
-        let sum = |first: usize| {
-            (first..first + n)
-                .map(|column| matrix[(row, column)])
-                .sum::<f64>()
-        };
-        let (by_thrust, by_torque) = (k_f * sum(0), k_q * sum(n));
-        let lift = |throttle: f64| {
-            let efforts = |map: &PairMap| map.efforts([throttle, throttle]);
-            if self.airframe.is_unlike() {
-                let of = |(i, [f, q]): (usize, [f64; 2])| {
-                    k_f * matrix[(row, i)] * f + k_q * matrix[(row, n + i)] * q
-                };
-                return self.maps.iter().map(efforts).enumerate().map(of).sum();
-            }
-            let [f, q] = efforts(&self.maps[0]);
-            by_thrust * f + by_torque * q
-        };
-        let [mut low, mut high] = self.range();
-        if !(lift(low) < weight_n && weight_n < lift(high)) {
-            return None;
-        }
-        for _ in 0..HALVINGS {
-            let middle = 0.5 * (low + high);
-            if lift(middle) < weight_n {
-                low = middle;
-            } else {
-                high = middle;
-            }
-        }
-        Some(high)
+        let [k_f, _] = self.airframe.voltage_factors(self.voltage_v);
+        equal_throttle(self.airframe, self.maps, self.airframe.weight_n()? / k_f)
     }
 }
 
@@ -421,11 +380,11 @@ mod tests {
         let text = std::fs::read_to_string(path).unwrap() + "\n[vehicle]\nmass_kg = 3.2\n";
         let compiled = compile(&Source::new("x8", text)).unwrap();
         let factors = compiled.betaflight_factors();
-        let [min, max] = compiled.pair.range();
+        let [min, max] = compiled.maps[0].range();
         let wrench = |outputs: &dyn Fn(usize) -> f64| -> [f64; 4] {
             let efforts = compiled.airframe.units.iter().map(|unit| {
                 let outputs: Vec<f64> = unit.channels().map(outputs).collect();
-                compiled.pair.efforts([outputs[0], outputs[1]])
+                compiled.maps[0].efforts([outputs[0], outputs[1]])
             });
             let efforts: Vec<[f64; 2]> = efforts.collect();
             let (matrix, n) = (&compiled.effectiveness.matrix, efforts.len());
@@ -463,7 +422,7 @@ mod tests {
             for over_weight in [1.4, 2.0, 3.0, 4.0, 6.0] {
                 let text = format!("{text}\n[vehicle]\nmass_kg = {}\n", full_kg / over_weight);
                 let compiled = compile(&Source::new("x8", text)).unwrap();
-                let [min, max] = compiled.pair.range();
+                let [min, max] = compiled.maps[0].range();
                 let stick = (compiled.equal_hover_throttle().unwrap() - min) / (max - min);
                 let e = compiled.betaflight_expo();
                 let square = stick * stick;

@@ -4,12 +4,11 @@ mod refusal;
 
 use mixer_rt::tables::Tolerance;
 
-use crate::airframe::Airframe;
+use crate::airframe::{Airframe, Pair, Unit, View};
 use crate::diagnostic::Diagnostic;
 use crate::inverse::evaluator::Evaluator;
 use crate::inverse::fit::{Inversion, Samples};
 use crate::model::effectiveness::Effectiveness;
-use crate::model::feedback::Feedback;
 use crate::model::law::{self, CorrectionTables};
 use crate::model::{PairMap, scales};
 use crate::proof::residual::Residual;
@@ -38,29 +37,24 @@ struct Attempt {
 const SHARP: f64 = 1.15;
 
 /// The cheapest evaluator that is proven to meet the file's tolerance at every voltage and density, for each of these
-/// airframes of one pair: the same one for all, with a table of its own for each.
+/// pairs: the same one for all, with a table of its own for each.
 ///
 /// # Errors
 /// No evaluator meets the tolerance; the best bound that could be proven.
 pub(crate) fn select(
-    airframes: &[Airframe],
+    views: &[View<'_, &Pair>],
     corrections: &CorrectionTables,
 ) -> Result<Vec<Selected>, Vec<Diagnostic>> {
     let place = |selected: &Selected| selected.map.inverse.evaluator.place();
     let mut least = 0;
     loop {
-        let selected = airframes.iter().map(|airframe| {
-            let chosen = choose(
-                airframe,
-                &PairMap::new(&airframe.pair, &airframe.throttle),
-                corrections,
-                least,
-            );
+        let selected = views.iter().map(|view| {
+            let chosen = choose(view, &PairMap::new(view.of, &view.throttle), corrections, least);
             if chosen.holds() {
                 return Ok(chosen);
             }
             let evaluator = chosen.map.inverse.evaluator;
-            Err(vec![refusal::tolerance(airframe, evaluator, &chosen.certificate)])
+            Err(vec![refusal::tolerance(view, evaluator, &chosen.certificate)])
         });
         let selected = selected.collect::<Result<Vec<Selected>, _>>()?;
         let most = selected.iter().map(place).max().unwrap_or_default();
@@ -80,30 +74,30 @@ impl Selected {
 
 /// The first evaluator, by cost, that holds, fitted to finer samples where none does; else the one that
 /// came closest.
-fn choose(airframe: &Airframe, pair: &PairMap, corrections: &CorrectionTables, least: usize) -> Selected {
-    let usual = choose_by(Samples::Usual, airframe, pair, corrections, least);
+fn choose(view: &View<'_, &Pair>, pair: &PairMap, corrections: &CorrectionTables, least: usize) -> Selected {
+    let usual = choose_by(Samples::Usual, view, pair, corrections, least);
     if usual.holds() {
         return usual;
     }
-    choose_by(Samples::Fine, airframe, pair, corrections, least)
+    choose_by(Samples::Fine, view, pair, corrections, least)
 }
 
 /// The first evaluator, by cost, that holds. Where none does, the one that came closest, with a
 /// thorough proof: others are given up where they take long.
 fn choose_by(
     samples: Samples,
-    airframe: &Airframe,
+    view: &View<'_, &Pair>,
     pair: &PairMap,
     corrections: &CorrectionTables,
     least: usize,
 ) -> Selected {
-    let correction = CorrectionBounds::new(airframe, corrections);
-    let tolerance = correction.tolerance_at_reference(airframe);
-    let (cheapest, others) = Evaluator::candidates(airframe.inverse.method, least);
+    let correction = CorrectionBounds::new(view, corrections);
+    let tolerance = correction.tolerance_at_reference(view);
+    let (cheapest, others) = Evaluator::candidates(view.inverse.method, least);
     let mut inversion = Inversion::new(pair, tolerance, samples, others.is_empty());
     let mut attempt = |evaluator: Evaluator| {
         let (inverse, fit_error) = inversion.fit(evaluator);
-        let map = UnitMap::new(airframe, inverse);
+        let map = UnitMap::new(view, inverse);
         // The grid of the fit is part of the set: what fails there, fails.
         let error = Residual::coarse_check(pair, &map).ratio(tolerance).max(fit_error);
         Attempt { map, error }
@@ -112,7 +106,7 @@ fn choose_by(
         let map = &attempt.map;
         let mut residual = Residual::over_set(pair, map);
         let aim = [0, 1].map(|k| (SHARP * residual.efforts[k]).min(tolerance[k]));
-        let certificate = proof::prove(airframe, map, &correction, aim, patience);
+        let certificate = proof::prove(view, map, &correction, aim, patience);
         // Where the proof found it hardest, more may be missed than on the grid.
         for throttles in certificate.at {
             residual.look(pair, map, throttles.map(|throttle| pair.clamp(throttle)));
@@ -143,63 +137,59 @@ fn choose_by(
     proven(&closest, Patience::Thorough)
 }
 
-/// Error below which a request counts as delivered: the proven bound, not what the file allows, so that
-/// any larger shortfall is flagged. `selected` are those of `airframes`, the airframe's of each pair.
+/// Error below which a request counts as delivered: the proven bound, not what the file allows, so that any larger
+/// shortfall is flagged. With it what thrust and torque of any unit may miss under all conditions, `[N, N m]`.
+///
+/// A single rotor is compared at run time with what is asked of it, by the same bound as pairs, or by what the file allows
+/// where no unit is a pair. `selected` are those of `views`.
 pub(crate) fn tolerance(
     airframe: &Airframe,
     effectiveness: &Effectiveness,
     corrections: &CorrectionTables,
-    airframes: &[Airframe],
+    views: &[View<'_, &Pair>],
     selected: &[Selected],
-    feedback: &Feedback,
-) -> Tolerance {
+) -> (Tolerance, [f64; 2]) {
     // The mixer compares what it computes, not what is: a request that is delivered must not look
     // missed.
     let correction = CorrectionBounds::new(airframe, corrections);
-    let (mut efforts, mut stated) = ([0.0f64; 2], [0.0f64; 2]);
-    let of_pairs = airframes.iter().zip(selected).filter(|_| airframe.has_pairs());
-    for (of_pair, Selected { map, certificate, .. }) in of_pairs {
-        let rounding = proof::rounding(of_pair, map, &correction);
+    let sizes = scales(airframe, [1.0; 2]);
+    let (mut efforts, mut of_pairs) = ([0.0f64; 2], [0.0f64; 2]);
+    for (view, Selected { map, certificate, .. }) in views.iter().zip(selected) {
+        let rounding = proof::rounding(view, map, &correction);
         efforts = [0, 1].map(|k| efforts[k].max(certificate.reference[k] + rounding[k]));
-        stated = [0, 1].map(|k| stated[k].max(certificate.stated[k]));
+        of_pairs = [0, 1].map(|k| of_pairs[k].max(certificate.stated[k]));
     }
-    if !airframe.single_rotors.is_empty() {
-        efforts[0] = efforts[0].max(feedback.thrust_n + ROUNDING * largest_thrust(airframe));
+    if airframe.pairs.is_empty() {
+        let allowed = airframe.inverse.tolerances();
+        let least = |k: usize| {
+            sizes
+                .iter()
+                .fold(allowed[k], |least, size| least.min(OF_SIZE * size[k]))
+        };
+        efforts = [least(0), least(1)];
     }
-    let wrench = wrench_tolerance(airframe, effectiveness, stated, feedback);
-    tables::tolerance_table(efforts, wrench)
+    let factors = law::largest_factors(airframe);
+    let of_singles = [0, 1].map(|k| efforts[k] * factors[k]);
+    let units = || {
+        let stated = |unit: &Unit| {
+            if unit.lower_channel.is_some() {
+                of_pairs
+            } else {
+                of_singles
+            }
+        };
+        airframe.units.iter().map(stated)
+    };
+    let rounded =
+        |(stated, size): ([f64; 2], &[f64; 2])| [0, 1].map(|k| stated[k] + ROUNDING * size[k] * factors[k]);
+    let allowed: Vec<[f64; 2]> = units().zip(&sizes).map(rounded).collect();
+    let wrench = std::array::from_fn(|axis| effectiveness.largest(axis, &allowed));
+    let stated = [0, 1].map(|k| units().fold(0.0, |most: f64, stated| most.max(stated[k])));
+    (tables::tolerance_table(efforts, wrench), stated)
 }
+
+/// Share of its largest efforts that a single rotor may miss at most, whatever the file allows.
+const OF_SIZE: f64 = 1e-3;
 
 /// Rounding of sums in f32 as a share of full efforts.
 const ROUNDING: f64 = 4e-6;
-
-/// Of any unit, N.
-fn largest_thrust(airframe: &Airframe) -> f64 {
-    let scales = scales(airframe, [1.0; 2]);
-    scales.iter().fold(0.0, |most, scale| most.max(scale[0]))
-}
-
-/// What the units' misses `stated` add up to on each axis, with the rounding of f32 sums of full
-/// efforts.
-fn wrench_tolerance(
-    airframe: &Airframe,
-    effectiveness: &Effectiveness,
-    stated: [f64; 2],
-    feedback: &Feedback,
-) -> [f64; 4] {
-    let factors = law::largest_factors(airframe);
-    let sizes = scales(airframe, [1.0; 2]).into_iter();
-    let units = airframe.units.iter().zip(&feedback.missed).zip(sizes);
-    let allowed = units.map(|((unit, missed), scale)| {
-        [0, 1].map(|k: usize| {
-            let own = if unit.lower_channel.is_some() {
-                stated[k]
-            } else {
-                0.0
-            };
-            own + (missed[k] + ROUNDING * scale[k]) * factors[k]
-        })
-    });
-    let allowed: Vec<[f64; 2]> = allowed.collect();
-    std::array::from_fn(|axis| effectiveness.largest(axis, &allowed))
-}

@@ -6,49 +6,45 @@
 //! generated Rust holds the same numbers in `mixer-rt`'s static types. [`MixerTables::mix`] runs
 //! `mixer-rt` itself on them.
 
+mod alone;
 mod part;
 mod quantity;
 mod rows;
-mod single;
 
 use mixer_rt::{
     Conditions, Health, Saturation, SetpointError, Wrench,
     tables::{
-        AllocationMethod, Border, Cell, ClosedForm, ClosedFormUnit, Facets, Inverse, Kind, NO_CHANNEL, Pair,
-        Priorities, SingleRotor, Steep, Tables, ThrottleRange, Tolerance, Unit, UnitState, Unlike,
+        Border, Cell, ClosedForm, ClosedFormUnit, Facets, Inverse, NO_CHANNEL, Pair, PairKind, Priorities,
+        RotorAlone, Steep, Tables, ThrottleRange, Tolerance, Unit, UnitState, Unlike,
     },
 };
 
-use crate::airframe::Airframe;
+use crate::airframe::{self, Airframe, View};
 use crate::inverse::table::InverseTable;
 use crate::model::PairMap;
 use crate::model::effectiveness::Effectiveness;
 use crate::model::law::{CorrectionTables, LawTable};
 
+use alone::{curve_table, rotors_alone};
 pub(crate) use part::{Part, identifier};
 pub use quantity::QuantityTable;
 use rows::rows;
-use single::{curve_table, single_tables};
 
 /// The tables of one airframe.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MixerTables {
     /// Shares of M and M+.
     pub units: Vec<Unit>,
-    /// The forward map.
-    pub pair: Pair<QuantityTable>,
-    /// What the upper and the lower rotor of a unit give alone.
-    pub singles: [SingleRotor; 2],
-    /// The inverse map.
-    pub inverse: InverseTable,
+    /// What each pair gives, in the order of the file.
+    pub pairs: Vec<PairKind<QuantityTable, InverseTable>>,
+    /// Thrust and torque of each kind of single rotor.
+    pub single_rotors: Vec<RotorAlone>,
     /// The allowed throttles.
     pub throttle: ThrottleRange,
     /// The corrections of voltage and density.
     pub corrections: CorrectionTables,
     /// Rows per N m and N: [`mixer_rt::tables::Tables::row_scale`].
     pub row_scale: [f32; 4],
-    /// [`mixer_rt::tables::Tables::mean_square_slopes`].
-    pub mean_square_slopes: [f32; 2],
     /// [`mixer_rt::tables::Tables::level_n`].
     pub level_n: [f32; 2],
     /// [`mixer_rt::tables::Tables::is_vertical`].
@@ -59,47 +55,8 @@ pub struct MixerTables {
     pub power_bias_nm_per_n: f32,
     /// The closed form of allocation, where the layout allows one.
     pub closed_form: Option<ClosedFormTable>,
-    /// The forward map, the inverse map and the rotors alone of each pair but the first, in the order of the file.
-    pub kinds: Vec<Kind<QuantityTable, InverseTable>>,
-    /// Thrust and torque of each kind of single rotor.
-    pub single_rotors: Vec<[SingleRotor; 2]>,
-    /// Passes of least norm over them.
-    pub passes: u8,
-    /// Which kind each unit is, where they differ: those of `kinds`, then the single rotors; 255 the first pair.
-    pub kind_of: Vec<u8>,
     /// Largest errors of the mixer.
     pub tolerance: Tolerance,
-}
-
-/// The ways of allocation that an airframe may have.
-#[derive(Clone, Debug, PartialEq)]
-pub struct AnyMethod<'a> {
-    closed_form: Option<ClosedForm<'a>>,
-    unlike: Option<Unlike<'a, QuantityTable, InverseTable>>,
-    single_rotors: &'a [[SingleRotor; 2]],
-    passes: u8,
-}
-
-impl AllocationMethod<QuantityTable> for AnyMethod<'_> {
-    type Inverse = InverseTable;
-
-    const MAY_HAVE_SINGLE_ROTORS: bool = true;
-
-    fn closed_form(&self) -> Option<&ClosedForm<'_>> {
-        self.closed_form.as_ref()
-    }
-
-    fn unlike(&self) -> Option<&Unlike<'_, QuantityTable, InverseTable>> {
-        self.unlike.as_ref()
-    }
-
-    fn single_rotors(&self) -> &[[SingleRotor; 2]] {
-        self.single_rotors
-    }
-
-    fn passes(&self) -> u8 {
-        self.passes
-    }
 }
 
 /// What is fitted and proven: the map of a unit, its inverse, and the throttles that it may give.
@@ -114,12 +71,19 @@ pub(crate) struct UnitMap {
 }
 
 impl UnitMap {
-    /// Rounds the airframe's map beside an inverse of it.
-    pub(crate) fn new(airframe: &Airframe, inverse: InverseTable) -> Self {
+    /// Rounds the pair's map beside an inverse of it.
+    pub(crate) fn new(view: &View<'_, &airframe::Pair>, inverse: InverseTable) -> Self {
+        let airframe::Pair {
+            basis,
+            thrust_n,
+            torque_nm,
+            ..
+        } = view.of;
+        let [thrust, torque] = [thrust_n, torque_nm].map(|terms| QuantityTable::new(*basis, terms));
         UnitMap {
-            pair: pair_table(airframe),
+            pair: Pair { thrust, torque },
             inverse,
-            throttle: throttle_table(airframe),
+            throttle: throttle_table(view),
         }
     }
 
@@ -135,14 +99,10 @@ pub(crate) struct Parts<'a> {
     pub(crate) airframe: &'a Airframe,
     /// M and M+.
     pub(crate) effectiveness: &'a Effectiveness,
-    /// The airframe of each pair.
-    pub(crate) airframes: &'a [Airframe],
     /// The corrections of voltage and density.
     pub(crate) corrections: &'a CorrectionTables,
     /// The map of each pair and its inverse.
     pub(crate) maps: Vec<&'a UnitMap>,
-    /// Passes of least norm over single rotors.
-    pub(crate) passes: u8,
     /// What the mixer may miss.
     pub(crate) tolerance: Tolerance,
 }
@@ -195,22 +155,23 @@ impl MixerTables {
             ..
         } = parts;
         let allocation = &airframe.allocation;
-        let (airframes, maps) = (parts.airframes.iter(), parts.maps.iter());
-        let mut kinds: Vec<_> = airframes
-            .zip(maps)
-            .map(|(airframe, map)| kind(airframe, map))
-            .collect();
-        let first = kinds.remove(0);
+        let pairs = airframe.pairs.iter().zip(&parts.maps);
+        let kind = |(pair, unit): (&airframe::Pair, &&UnitMap)| {
+            let map = PairMap::new(pair, &airframe.throttle);
+            PairKind {
+                pair: unit.pair,
+                alone: rotors_alone(pair, &map),
+                inverse: unit.inverse.clone(),
+                mean_square_slopes: map.mean_square_slopes().map(|mean| mean as f32),
+            }
+        };
         MixerTables {
             is_vertical: effectiveness.is_vertical(),
             units: unit_tables(airframe, effectiveness),
-            pair: first.pair,
-            singles: first.singles,
-            inverse: first.inverse,
+            pairs: pairs.map(kind).collect(),
             throttle: throttle_table(airframe),
             corrections: parts.corrections.clone(),
             row_scale: rows(airframe, effectiveness),
-            mean_square_slopes: first.mean_square_slopes,
             level_n: [0.0; 2],
             priorities: Priorities {
                 airmode: allocation.airmode,
@@ -218,22 +179,10 @@ impl MixerTables {
             },
             power_bias_nm_per_n: allocation.power_bias_nm_per_n as f32,
             closed_form,
-            kind_of: match airframe.is_unlike() {
-                true => {
-                    let units = airframe.units.iter();
-                    units.map(|unit| (unit.pair as u8).wrapping_sub(1)).collect()
-                }
-                false => Vec::new(),
-            },
-            kinds,
             single_rotors: {
-                let curves = airframe
-                    .single_rotors
-                    .iter()
-                    .filter_map(|rotor| rotor.lower_out.as_ref());
-                curves.map(|curve| [curve_table(curve); 2]).collect()
+                let rotors = airframe.single_rotors.iter();
+                rotors.map(|rotor| curve_table(&rotor.alone)).collect()
             },
-            passes: parts.passes,
             tolerance: parts.tolerance,
         }
     }
@@ -242,59 +191,39 @@ impl MixerTables {
     #[cfg(test)]
     pub(crate) fn map(&self) -> UnitMap {
         UnitMap {
-            pair: self.pair,
-            inverse: self.inverse.clone(),
+            pair: self.pairs[0].pair,
+            inverse: self.pairs[0].inverse.clone(),
             throttle: self.throttle,
         }
     }
 
     /// The tables as `mixer-rt` reads them.
-    pub fn view(&self) -> Tables<'_, QuantityTable, &InverseTable, AnyMethod<'_>> {
+    pub fn view(&self) -> Tables<'_, Unlike<'_, QuantityTable, InverseTable, true>, Option<ClosedForm<'_>>> {
         Tables {
             units: &self.units,
-            pair: self.pair,
-            singles: self.singles,
-            inverse: &self.inverse,
+            kinds: Unlike {
+                pairs: &self.pairs,
+                single_rotors: &self.single_rotors,
+            },
             throttle: self.throttle,
             voltage: self.corrections.voltage.as_ref().map(LawTable::view),
             air: self.corrections.air.as_ref().map(LawTable::view),
             row_scale: self.row_scale,
-            mean_square_slopes: self.mean_square_slopes,
             level_n: self.level_n,
             is_vertical: self.is_vertical,
             priorities: self.priorities,
             power_bias_nm_per_n: self.power_bias_nm_per_n,
-            closed_form: AnyMethod {
-                closed_form: self.closed_form.as_ref().map(ClosedFormTable::view),
-                unlike: self.unlike(),
-                single_rotors: &self.single_rotors,
-                passes: self.passes,
-            },
+            closed_form: self.closed_form.as_ref().map(ClosedFormTable::view),
             tolerance: self.tolerance,
         }
     }
 
-    /// The kinds of units as `mixer-rt` reads them.
-    pub(crate) fn unlike(&self) -> Option<Unlike<'_, QuantityTable, InverseTable>> {
-        let (kinds, of) = (self.kinds.as_slice(), self.kind_of.as_slice());
-        (!of.is_empty()).then_some(Unlike { kinds, of })
-    }
-
-    /// The same tables where all units have this one of the pairs.
-    pub(crate) fn of_pair(&self, pair: usize) -> Self {
-        let mut alike = MixerTables {
-            kinds: Vec::new(),
-            single_rotors: Vec::new(),
-            kind_of: Vec::new(),
-            ..self.clone()
-        };
-        if let Some(kind) = pair.checked_sub(1).and_then(|other| self.kinds.get(other)) {
-            alike.pair = kind.pair;
-            alike.singles = kind.singles;
-            alike.inverse = kind.inverse.clone();
-            alike.mean_square_slopes = kind.mean_square_slopes;
+    /// The pair that all units are; `None` where they differ.
+    pub(crate) fn pair_of_all(&self) -> Option<&PairKind<QuantityTable, InverseTable>> {
+        match self.pairs.as_slice() {
+            [pair] if self.single_rotors.is_empty() => Some(pair),
+            _ => None,
         }
-        alike
     }
 
     /// Number of output channels.
@@ -317,10 +246,11 @@ impl MixerTables {
         }
     }
 
-    /// Throttles `[u, l]` of a unit of the first pair for its `efforts` (N, N m at the reference voltage), by the emitted
-    /// inverse.
-    pub fn throttles(&self, efforts: [f32; 2]) -> [f32; 2] {
-        self.inverse.throttles(&self.pair, &self.throttle, efforts)
+    /// Throttles `[u, l]` of a pair, by index, for its `efforts` (N, N m at the reference voltage), by the emitted inverse;
+    /// `None` where there is no such pair.
+    pub fn throttles(&self, pair: usize, efforts: [f32; 2]) -> Option<[f32; 2]> {
+        let PairKind { pair, inverse, .. } = self.pairs.get(pair)?;
+        Some(inverse.throttles(pair, &self.throttle, efforts))
     }
 
     /// Mixes with `mixer-rt`, operation by operation as the generated mixer does.
@@ -357,59 +287,30 @@ impl MixerTables {
     /// Throttles `[u, l]` of the units for the efforts of least norm at `[k_f, k_Q]`; `None` where some
     /// unit cannot give them.
     pub(crate) fn least_norm(&self, wrench: [f32; 4], factors: [f64; 2]) -> Option<Vec<[f32; 2]>> {
-        let view = self.view();
-        let effort = |unit: &Unit, asked: [f32; 4], k: usize| -> f32 {
-            let parts = unit.allocation[k].iter().zip(asked);
-            parts.map(|(share, asked)| share * asked).sum::<f32>() / factors[k] as f32
-        };
-        // The wrench less what the torques of single rotors differ from their share in M+ by.
-        let mut asked = wrench;
-        for _ in 0..self.passes {
-            let mut next = wrench;
-            for (index, unit) in self.units.iter().enumerate() {
-                let Some(curve) = view.curve_of(index) else {
-                    continue;
-                };
-                let [f, q] = [0, 1].map(|k| effort(unit, asked, k));
-                let [_, given] = curve.efforts(curve.throttle(&self.throttle, f));
-                for (next, effect) in next.iter_mut().zip(unit.effectiveness[1]) {
-                    *next -= effect * factors[1] as f32 * (given - q);
-                }
-            }
-            asked = next;
-        }
-        let one = |(index, unit): (usize, &Unit)| {
-            let wanted = [0, 1].map(|k| effort(unit, asked, k));
-            let throttles = view.throttles_of(index, wanted);
-            let given = view.efforts_of(index, throttles);
-            let gives = |k: usize| (given[k] - wanted[k]).abs() <= self.tolerance.efforts[k];
-            // The torque of a single rotor was fed back.
-            (gives(0) && (gives(1) || view.curve_of(index).is_some())).then_some(throttles)
-        };
-        self.units.iter().enumerate().map(one).collect()
+        let mut states = vec![UnitState::default(); self.units.len()];
+        let factors = factors.map(|k| k as f32);
+        mixer_rt::tables::least_norm(&self.view(), &wrench, factors, &mut states)
+            .then(|| states.iter().map(UnitState::throttles).collect())
     }
 
     /// Bytes of the tables in flash.
     pub fn bytes(&self) -> usize {
         let view = self.view();
-        let passes = (!self.single_rotors.is_empty()).then_some(self.passes);
-        let parts: [&dyn Part; 17] = [
+        let kinds: &dyn Part = match self.pair_of_all() {
+            Some(pair) => pair,
+            None => &view.kinds,
+        };
+        let parts: [&dyn Part; 11] = [
             &view.units,
-            &view.pair,
-            &view.singles,
-            &view.inverse,
+            kinds,
             &view.throttle,
             &view.voltage,
             &view.air,
             &view.row_scale,
-            &view.mean_square_slopes,
             &view.level_n,
             &view.priorities,
             &view.power_bias_nm_per_n,
-            &view.closed_form.closed_form,
-            &view.closed_form.unlike,
-            &view.closed_form.single_rotors,
-            &passes,
+            &view.closed_form,
             &view.tolerance,
         ];
         parts.into_iter().map(Part::bytes).sum()
@@ -417,28 +318,7 @@ impl MixerTables {
 
     /// Bytes of the inverse map's own constants.
     pub fn inverse_bytes(&self) -> usize {
-        let others = self.kinds.iter().map(|kind| kind.inverse.bytes());
-        self.inverse.bytes() + others.sum::<usize>()
-    }
-}
-
-/// Rounds the forward map.
-fn pair_table(airframe: &Airframe) -> Pair<QuantityTable> {
-    let pair = &airframe.pair;
-    Pair {
-        thrust: QuantityTable::new(pair.basis, &pair.thrust_n),
-        torque: QuantityTable::new(pair.basis, &pair.torque_nm),
-    }
-}
-
-/// What a unit of an airframe of one pair gives.
-fn kind(airframe: &Airframe, map: &UnitMap) -> Kind<QuantityTable, InverseTable> {
-    let pair = PairMap::new(&airframe.pair, &airframe.throttle);
-    Kind {
-        pair: map.pair,
-        singles: single_tables(airframe),
-        inverse: map.inverse.clone(),
-        mean_square_slopes: pair.mean_square_slopes().map(|mean| mean as f32),
+        self.pairs.iter().map(|pair| pair.inverse.bytes()).sum()
     }
 }
 
@@ -474,6 +354,7 @@ fn unit_tables(airframe: &Airframe, effectiveness: &Effectiveness) -> Vec<Unit> 
             allocation: [row(i), row(n + i)],
             effectiveness: [column(i), column(n + i)],
             channels: unit.channel_table(),
+            kind: unit.kind as u8,
         })
         .collect()
 }

@@ -56,9 +56,9 @@ fn isae_x8_is_as_in_the_paper() {
     assert_eq!(airframe.module_name(), "isae_x8");
     assert_eq!(airframe.type_name(), "IsaeX8");
     assert_eq!((airframe.throttle.min, airframe.throttle.max), (0.1, 1.0));
-    assert_eq!(airframe.pair.basis, Basis::Biquadratic);
-    assert_eq!(airframe.pair.thrust_n[0], 5.2075);
-    assert_eq!(airframe.pair.torque_nm[7], 0.0720);
+    assert_eq!(airframe.pairs[0].basis, Basis::Biquadratic);
+    assert_eq!(airframe.pairs[0].thrust_n[0], 5.2075);
+    assert_eq!(airframe.pairs[0].torque_nm[7], 0.0720);
     assert_eq!(airframe.rotors(), 8);
     let signs: Vec<_> = airframe
         .units
@@ -248,13 +248,13 @@ fn the_optional_keys_of_the_pair_and_of_the_vehicle_are_kept() {
     let units = "[layout]\narm_m = 0.3\nunits = 3\nfirst_angle_deg = 0\n";
     let bare = read(&format!("{PAIR}{units}[vehicle]\nmass_kg = 3.2\n"));
     assert_eq!(bare.vehicle.unwrap().inertia_kg_m2, None);
-    assert_eq!(bare.pair.uncertainty, None);
+    assert_eq!(bare.pairs[0].uncertainty, None);
     let full = read(&format!(
         "{PAIR}[pair.uncertainty]\nthrust_percent = 1.5\ntorque_percent = 100\n{units}\
          [vehicle]\nmass_kg = 3.2\ninertia_kg_m2 = [0.080, 0.087, 0.160]\n"
     ));
     assert_eq!(full.vehicle.unwrap().inertia_kg_m2, Some([0.080, 0.087, 0.160]));
-    let uncertainty = full.pair.uncertainty.unwrap();
+    let uncertainty = full.pairs[0].uncertainty.unwrap();
     assert_eq!(
         (uncertainty.thrust_percent, uncertainty.torque_percent),
         (1.5, 100.0)

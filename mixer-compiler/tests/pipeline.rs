@@ -44,7 +44,7 @@ fn effectiveness_is_equation_4() {
 /// The figure of the paper's model: it folds below an idle of 0.08875.
 #[test]
 fn least_idle_is_where_the_model_folds() {
-    assert_eq!(isae_x8(&[]).unwrap().least_idle, 0.08875);
+    assert_eq!(isae_x8(&[]).unwrap().of_pairs[0].least_idle, 0.08875);
     assert!(isae_x8(&[("min = 0.10", "min = 0.08875")]).is_ok());
     let faults = refused(&[("min = 0.10", "min = 0.0887")]);
     assert_eq!(faults.faults()[0].code, Code::Fold);
@@ -106,12 +106,15 @@ fn the_tolerance_decides_on_the_evaluator() {
             ),
         ]);
         let compiled = compiled.unwrap_or_else(|faults| panic!("{faults}"));
-        let cost = compiled.evaluator.cost(compiled.airframe.pair.basis).unwrap();
-        assert!(cost > last, "{thrust} N: {:?}", compiled.evaluator);
+        let cost = compiled.of_pairs[0]
+            .evaluator
+            .cost(compiled.airframe.pairs[0].basis)
+            .unwrap();
+        assert!(cost > last, "{thrust} N: {:?}", compiled.of_pairs[0].evaluator);
         last = cost;
-        let certificate = &compiled.certificate;
+        let certificate = &compiled.of_pairs[0].certificate;
         for (k, tolerance) in [thrust, torque].into_iter().enumerate() {
-            assert!(compiled.residual.efforts[k] <= certificate.reference[k]);
+            assert!(compiled.of_pairs[0].residual.efforts[k] <= certificate.reference[k]);
             assert!(certificate.stated[k] <= tolerance.parse().unwrap());
         }
     }

@@ -17,8 +17,8 @@ fn read(text: &str) -> Result<(), TestCaseError> {
             // What the model promises.
             prop_assert!(airframe.throttle.min < airframe.throttle.max);
             prop_assert_eq!(
-                airframe.pair.thrust_n.len(),
-                airframe.pair.basis.exponents().len()
+                airframe.pairs[0].thrust_n.len(),
+                airframe.pairs[0].basis.exponents().len()
             );
             let mut outputs: Vec<_> = airframe
                 .units

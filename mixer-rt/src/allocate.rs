@@ -20,11 +20,13 @@
 //!
 //! ```text
 //! all rotors     least norm, eq. (8)                                  allocate/least_norm.rs
-//!                up to four vertical units: in closed form            allocate/closed_form.rs
+//!                up to four vertical pairs alike: in closed form      allocate/closed_form.rs
 //!                else an interior point method on the throttles       allocate/interior.rs
-//! rotors out     nearest the whole frame's least norm                 allocate/rotors_out.rs
+//! rotors out     nearest the whole frame's least norm                 allocate/rotors_alone.rs
 //!                else the interior point method
 //! ```
+//!
+//! A single rotor is a pair whose partner is out: least norm of frames that have one is that with rotors out.
 
 pub(crate) mod closed_form;
 mod frame;
@@ -33,7 +35,7 @@ pub(crate) mod least_norm;
 pub(crate) mod power_bias;
 pub(crate) mod priorities;
 mod request;
-mod rotors_out;
+mod rotors_alone;
 mod system;
 pub(crate) mod unit;
 mod unknown;
@@ -41,7 +43,8 @@ mod unknown;
 use core::hint::black_box;
 
 use crate::layout::Tables;
-use crate::pair::{Inverse, Quantity};
+use crate::pair::Kinds;
+use crate::pair::rotors::Rotors;
 use closed_form::AllocationMethod;
 use frame::Frame;
 use unit::UnitState;
@@ -50,8 +53,8 @@ use unit::UnitState;
 /// which hold the rotors that turn. `factors` is `[k_f, k_Q]`. `is_whole` tells that all rotors turn. True
 /// where these are the throttles of least norm, with all rotors.
 #[inline(never)]
-pub(crate) fn allocate<P: Quantity, I: Inverse, S: AllocationMethod<P>, const VERTICAL: bool>(
-    tables: &Tables<'_, P, I, S>,
+pub(crate) fn allocate<K: Kinds, S: AllocationMethod, const VERTICAL: bool>(
+    tables: &Tables<'_, K, S>,
     wrench: &[f32; 4],
     factors: [f32; 2],
     units: &mut [UnitState],
@@ -59,16 +62,25 @@ pub(crate) fn allocate<P: Quantity, I: Inverse, S: AllocationMethod<P>, const VE
 ) -> bool {
     // With the tables or the number of units known the compiler would write every loop over them out.
     let (tables, units) = black_box((tables, units));
-    let frame = Frame::<_, _, _, VERTICAL>::new(tables, factors);
-    if is_whole {
-        if frame.serve(wrench, units) {
-            return true;
-        }
-        if !frame.cut(wrench, units, is_whole) {
-            frame.level(wrench[3], units);
-        }
-    } else if !frame.serve_with_rotors_out(wrench, units) {
-        frame.cut(wrench, units, is_whole);
+    let frame = Frame::<_, _, VERTICAL>::new(tables, factors);
+    if frame.serve(wrench, units, is_whole) {
+        return is_whole;
+    }
+    if !frame.cut(wrench, units, is_whole) && is_whole {
+        frame.level(wrench[3], units);
     }
     false
+}
+
+/// Whether least norm serves a wrench with all rotors; `units` then have the throttles. For the compiler.
+pub fn least_norm<K: Kinds, S: AllocationMethod>(
+    tables: &Tables<'_, K, S>,
+    wrench: &[f32; 4],
+    factors: [f32; 2],
+    units: &mut [UnitState],
+) -> bool {
+    for (index, unit) in units.iter_mut().enumerate() {
+        unit.rotors = Rotors::all(tables.is_single(index));
+    }
+    Frame::<_, _, false>::new(tables, factors).serve(wrench, units, true)
 }

@@ -1,9 +1,10 @@
 //! The tables of one airframe as a whole.
 
-use crate::allocate::closed_form::{AllocationMethod, NoClosedForm};
+use crate::allocate::closed_form::NoClosedForm;
 use crate::allocate::priorities::Priorities;
 use crate::conditions::Law;
-use crate::pair::{Inverse, Kind, Pair, Quantity, SingleRotor, ThrottleRange};
+use crate::pair::rotors::Rotors;
+use crate::pair::{Expansion, Inverse, Kinds, PairKind, RotorAlone, ThrottleRange};
 
 /// One coaxial unit's share of M and M+.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,6 +17,8 @@ pub struct Unit {
     pub effectiveness: [[f32; 4]; 2],
     /// Channels of the upper and of the lower rotor; the lower one of a single rotor is [`NO_CHANNEL`].
     pub channels: [u8; 2],
+    /// Its kind: see [`Kinds`].
+    pub kind: u8,
 }
 
 /// The channel of a rotor that does not exist, beyond those of any frame.
@@ -53,18 +56,14 @@ pub struct Tolerance {
     pub wrench: [f32; 4],
 }
 
-/// All that the mixer of one airframe needs. `P` is the basis of the pair model, `I` the evaluator
-/// of its inverse, `S` says whether there is a closed form: `&ClosedForm`, or [`NoClosedForm`].
+/// All that the mixer of one airframe needs. `K` is what its units give, `S` says whether there is a closed form:
+/// `&ClosedForm`, or [`NoClosedForm`].
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Tables<'a, P, I, S = NoClosedForm> {
+pub struct Tables<'a, K, S = NoClosedForm> {
     /// The units, in the order of the airframe file.
     pub units: &'a [Unit],
-    /// The forward map of every unit.
-    pub pair: Pair<P>,
-    /// Thrust and torque of the upper and of the lower rotor of a unit, the other one out.
-    pub singles: [SingleRotor; 2],
-    /// The inverse map of every unit.
-    pub inverse: I,
+    /// What the units give.
+    pub kinds: K,
     /// The allowed throttles.
     pub throttle: ThrottleRange,
     /// How thrust and torque follow the battery's voltage, V; without it they do not.
@@ -75,8 +74,6 @@ pub struct Tables<'a, P, I, S = NoClosedForm> {
     /// number of units over the vehicle's authority on the axis at the reference voltage; 0 on axes
     /// that the airframe does not serve.
     pub row_scale: [f32; 4],
-    /// Means over the throttles of f_u^2 + f_l^2 (N^2) and of Q_u^2 + Q_l^2 (N^2 m^2).
-    pub mean_square_slopes: [f32; 2],
     /// Least and largest thrust (N) that least norm delivers without torques, at the reference voltage.
     pub level_n: [f32; 2],
     /// True where thrusts give no yaw, and torques nothing else.
@@ -92,71 +89,75 @@ pub struct Tables<'a, P, I, S = NoClosedForm> {
     pub tolerance: Tolerance,
 }
 
-/// What a unit, by index, has of its own. Where all are alike, these fold to the tables' one map.
-impl<P: Quantity, I: Inverse, S: AllocationMethod<P>> Tables<'_, P, I, S> {
+/// What a unit, by index, gives. Where all are alike, these fold to the one kind.
+impl<K: Kinds, S> Tables<'_, K, S> {
     #[inline(always)]
-    fn kind(&self, unit: usize) -> Option<&Kind<P, S::Inverse>> {
-        let unlike = self.closed_form.unlike()?;
-        unlike.kinds.get(usize::from(*unlike.of.get(unit)?))
+    fn kind(&self, unit: usize) -> u8 {
+        self.units.get(unit).map_or(0, |unit| unit.kind)
     }
 
-    /// The rows of a unit that is a single rotor.
+    /// The pair of a unit; `None` of a single rotor.
     #[inline(always)]
-    fn single_rotor(&self, unit: usize) -> Option<&[SingleRotor; 2]> {
-        if !S::MAY_HAVE_SINGLE_ROTORS {
-            return None;
+    pub(crate) fn pair_of(&self, unit: usize) -> Option<&PairKind<K::Quantity, K::Inverse>> {
+        self.kinds.pair(self.kind(unit))
+    }
+
+    /// The upper (0) or the lower (1) rotor of a unit alone.
+    #[inline(always)]
+    pub(crate) fn alone(&self, unit: usize, side: usize) -> &RotorAlone {
+        self.kinds.alone(self.kind(unit), side)
+    }
+
+    /// Whether a unit is a single rotor.
+    #[inline(always)]
+    pub(crate) fn is_single(&self, unit: usize) -> bool {
+        K::MAY_BE_SINGLE && self.pair_of(unit).is_none()
+    }
+
+    /// Efforts `[f, Q]` of a unit at throttles `[u, l]`, N and N m at the reference voltage, where `rotors` turn.
+    #[inline(always)]
+    pub(crate) fn efforts(&self, unit: usize, rotors: Rotors, [u, l]: [f32; 2]) -> [f32; 2] {
+        match rotors.turning() {
+            [true, true] => self.pair_of(unit).map_or([0.0; 2], |of| of.pair.efforts([u, l])),
+            [true, false] => self.alone(unit, 0).efforts(u),
+            [false, true] => self.alone(unit, 1).efforts(l),
+            [false, false] => [0.0; 2],
         }
-        let unlike = self.closed_form.unlike()?;
-        let place = usize::from(*unlike.of.get(unit)?).checked_sub(unlike.kinds.len())?;
-        self.closed_form.single_rotors().get(place)
     }
 
-    /// Thrust and torque of a unit that is a single rotor, over its throttle; `None` of a pair.
+    /// The same with the derivatives by the throttles of those that turn.
     #[inline(always)]
-    pub fn curve_of(&self, unit: usize) -> Option<&SingleRotor> {
-        self.single_rotor(unit).map(|[curve, _]| curve)
+    pub(crate) fn expansion(&self, unit: usize, rotors: Rotors, [u, l]: [f32; 2]) -> Expansion {
+        let (side, throttle) = match rotors.turning() {
+            [true, true] => {
+                let pair = self.pair_of(unit);
+                return pair.map_or(Expansion::NOTHING, |of| of.pair.expansion([u, l]));
+            }
+            [true, false] => (0, u),
+            [false, true] => (1, l),
+            [false, false] => return Expansion::NOTHING,
+        };
+        let [value, slope, curvature] = self.alone(unit, side).expansion(throttle);
+        let mut expansion = Expansion {
+            value,
+            ..Expansion::NOTHING
+        };
+        (expansion.slopes[side], expansion.curvatures[side]) = (slope, curvature);
+        expansion
     }
 
-    /// The forward map of a unit.
-    #[inline(always)]
-    pub fn pair_of(&self, unit: usize) -> &Pair<P> {
-        self.kind(unit).map_or(&self.pair, |kind| &kind.pair)
-    }
-
-    /// The rotors alone.
-    #[inline(always)]
-    pub(crate) fn singles_of(&self, unit: usize) -> &[SingleRotor; 2] {
-        if let Some(rows) = self.single_rotor(unit) {
-            return rows;
-        }
-        self.kind(unit).map_or(&self.singles, |kind| &kind.singles)
-    }
-
-    /// The mean squares of the slopes.
-    #[inline(always)]
-    pub(crate) fn slopes_of(&self, unit: usize) -> [f32; 2] {
-        self.kind(unit)
-            .map_or(self.mean_square_slopes, |kind| kind.mean_square_slopes)
-    }
-
-    /// Efforts of a unit all of whose rotors turn.
+    /// Efforts `[f, Q]` of a unit all of whose rotors turn.
     #[inline(always)]
     pub fn efforts_of(&self, unit: usize, throttles: [f32; 2]) -> [f32; 2] {
-        match self.curve_of(unit) {
-            Some(curve) => curve.efforts(throttles[0]),
-            None => self.pair_of(unit).efforts(throttles),
-        }
+        self.efforts(unit, Rotors::all(self.is_single(unit)), throttles)
     }
 
-    /// Throttles for `efforts`, N and N m at the reference voltage. A single rotor has those of the thrust.
+    /// Throttles for `efforts`, N and N m at the reference voltage. A single rotor has about those of the thrust.
     #[inline(always)]
     pub fn throttles_of(&self, unit: usize, efforts: [f32; 2]) -> [f32; 2] {
-        if let Some(curve) = self.curve_of(unit) {
-            return [curve.throttle(&self.throttle, efforts[0]), 0.0];
-        }
-        match self.kind(unit) {
-            None => self.inverse.throttles(&self.pair, &self.throttle, efforts),
-            Some(kind) => kind.inverse.throttles(&kind.pair, &self.throttle, efforts),
+        match self.pair_of(unit) {
+            Some(of) => of.inverse.throttles(&of.pair, &self.throttle, efforts),
+            None => [self.alone(unit, 0).throttle(&self.throttle, efforts[0]), 0.0],
         }
     }
 }

@@ -8,7 +8,7 @@ use crate::allocate::unit::UnitState;
 use crate::conditions::{Conditions, Correction};
 use crate::layout::Tables;
 use crate::pair::rotors::Rotors;
-use crate::pair::{Inverse, Quantity};
+use crate::pair::{Inverse, Kinds, PairKind};
 use crate::{Axis, Health, Saturation, SetpointError, Wrench};
 use crate::{divided, rolled};
 
@@ -84,8 +84,8 @@ impl<const CHANNELS: usize> Mix<CHANNELS> {
 /// # Errors
 /// A setpoint or voltage that is infinite or NaN: see [`SetpointError`].
 #[inline(always)]
-pub fn mix<const UNITS: usize, const CHANNELS: usize, P: Quantity, I: Inverse, S: AllocationMethod<P>>(
-    tables: &Tables<'_, P, I, S>,
+pub fn mix<const UNITS: usize, const CHANNELS: usize, K: Kinds, S: AllocationMethod>(
+    tables: &Tables<'_, K, S>,
     setpoint: &Wrench,
     conditions: Conditions,
     health: Health,
@@ -107,8 +107,8 @@ pub fn mix<const UNITS: usize, const CHANNELS: usize, P: Quantity, I: Inverse, S
 /// # Errors
 /// As [`mix`]; `throttle` is then as it was.
 #[inline(always)]
-pub fn mix_into<P: Quantity, I: Inverse, S: AllocationMethod<P>, W: AsMut<[UnitState]>>(
-    tables: &Tables<'_, P, I, S>,
+pub fn mix_into<K: Kinds, S: AllocationMethod, W: AsMut<[UnitState]>>(
+    tables: &Tables<'_, K, S>,
     setpoint: &Wrench,
     conditions: Conditions,
     health: Health,
@@ -126,8 +126,8 @@ type Mixed = Result<(Wrench, Saturation), SetpointError>;
 
 /// [`mix_into`] without a closed form, or with rotors out.
 #[inline(always)]
-fn mix_in_general<P: Quantity, I: Inverse, S: AllocationMethod<P>>(
-    tables: &Tables<'_, P, I, S>,
+fn mix_in_general<K: Kinds, S: AllocationMethod>(
+    tables: &Tables<'_, K, S>,
     setpoint: &Wrench,
     conditions: Conditions,
     health: Health,
@@ -144,14 +144,14 @@ fn mix_in_general<P: Quantity, I: Inverse, S: AllocationMethod<P>>(
     for (index, (unit, state)) in units.iter().zip(states.iter_mut()).enumerate() {
         state.rotors = Rotors::of(unit.channels, health);
         is_whole &= state.rotors.are_both();
-        if tables.curve_of(index).is_some() {
+        if tables.is_single(index) {
             state.rotors = state.rotors.without_lower();
         }
     }
     let is_least_norm = if tables.is_vertical {
-        allocate::<_, _, _, true>(tables, &bounded, factors, states, is_whole)
+        allocate::<_, _, true>(tables, &bounded, factors, states, is_whole)
     } else {
-        allocate::<_, _, _, false>(tables, &bounded, factors, states, is_whole)
+        allocate::<_, _, false>(tables, &bounded, factors, states, is_whole)
     };
     if is_least_norm && tables.power_bias_nm_per_n != 0.0 {
         add_power_bias(tables, &bounded, factors, states);
@@ -167,8 +167,8 @@ fn mix_in_general<P: Quantity, I: Inverse, S: AllocationMethod<P>>(
 
 /// [`mix_into`] in closed form; `None` where there is none, or a rotor is out.
 #[inline(always)]
-fn mix_in_closed_form<P: Quantity, I: Inverse, S: AllocationMethod<P>>(
-    tables: &Tables<'_, P, I, S>,
+fn mix_in_closed_form<K: Kinds, S: AllocationMethod>(
+    tables: &Tables<'_, K, S>,
     setpoint: &Wrench,
     conditions: Conditions,
     health: Health,
@@ -176,7 +176,8 @@ fn mix_in_closed_form<P: Quantity, I: Inverse, S: AllocationMethod<P>>(
 ) -> Option<Mixed> {
     let is_good = health.is_good_below(2 * tables.units.len());
     let closed_form = tables.closed_form.closed_form().filter(|_| is_good)?;
-    Some(mix_by(closed_form, tables, setpoint, conditions, throttle))
+    let kind = tables.kinds.pair(0)?;
+    Some(mix_by(closed_form, kind, tables, setpoint, conditions, throttle))
 }
 
 /// Mixes in closed form, with all rotors. Efforts next to the border ([`Attained::Perhaps`])
@@ -184,9 +185,10 @@ fn mix_in_closed_form<P: Quantity, I: Inverse, S: AllocationMethod<P>>(
 /// other efforts are attainable, so by the compiler's proof each unit gives them within the
 /// tolerance.
 #[inline(always)]
-fn mix_by<P: Quantity, I: Inverse, S>(
+fn mix_by<K: Kinds, S>(
     closed_form: &ClosedForm<'_>,
-    tables: &Tables<'_, P, I, S>,
+    kind: &PairKind<K::Quantity, K::Inverse>,
+    tables: &Tables<'_, K, S>,
     setpoint: &Wrench,
     conditions: Conditions,
     throttle: &mut [f32],
@@ -218,9 +220,9 @@ fn mix_by<P: Quantity, I: Inverse, S>(
         let mut is_near = true;
         for (unit, effort) in closed_form.units.iter().zip(&mut efforts) {
             let wanted = [effort.thrust, effort.torque];
-            let throttles = tables.inverse.throttles(&tables.pair, &tables.throttle, wanted);
+            let throttles = kind.inverse.throttles(&kind.pair, &tables.throttle, wanted);
             write(unit.channels, throttles, throttle);
-            [effort.thrust, effort.torque] = tables.pair.efforts(throttles);
+            [effort.thrust, effort.torque] = kind.pair.efforts(throttles);
             if attained == Attained::Perhaps {
                 is_near &= is_within([effort.thrust, effort.torque], wanted, tables.tolerance.efforts);
             }

@@ -4,13 +4,14 @@
 
 /// Format of these types and functions. It counts up with every change that a generated module can
 /// see; the module asserts it at compile time.
-pub const FORMAT: u32 = 1;
+pub const FORMAT: u32 = 2;
 
 pub use crate::allocate::closed_form::{
     AllocationMethod, Border, Cell, ClosedForm, ClosedFormUnit, Facets, Grid, Knot, NoClosedForm, Outline,
     Steep,
 };
 pub use crate::allocate::interior::MOST_ITERATIONS;
+pub use crate::allocate::least_norm;
 pub use crate::allocate::priorities::{Airmode, Priorities, REQUEST_LIMIT};
 pub use crate::allocate::unit::UnitState;
 pub use crate::arithmetic::{Scalar, sqrt};
@@ -18,6 +19,6 @@ pub use crate::conditions::{Law, LawPiece};
 pub use crate::layout::{NO_CHANNEL, Tables, Tolerance, Unit};
 pub use crate::mix::{Sealed, mix, mix_into};
 pub use crate::pair::{
-    Biquadratic, Coefficients, Cubic, Inverse, Kind, Pair, PolynomialInverse, Quantity, Quartic, SingleRotor,
-    ThrottleRange, Unlike, WithSingleRotors, solve,
+    Biquadratic, Coefficients, Cubic, Inverse, Kinds, Pair, PairKind, PolynomialInverse, Quantity, Quartic,
+    RotorAlone, ThrottleRange, Unlike, solve,
 };

@@ -110,7 +110,7 @@ fn fly(
     let airframe = &compiled.airframe;
     let physics = Physics {
         airframe,
-        map: &compiled.pair,
+        map: &compiled.maps[0],
     };
     let conditions =
         Conditions::at_voltage(airframe.reference_v() as f32).in_air(airframe.reference_density() as f32);

@@ -93,7 +93,7 @@ fn inverses_raise_no_exception_far_outside_the_attainable_set() {
         let compiled = frames::compile_text(&format!("{airframe}{inverse}")).expect(inverse);
         for &f in &numbers {
             for &q in &numbers {
-                let (flags, throttles) = raised(|| compiled.tables.throttles([f, q]));
+                let (flags, throttles) = raised(|| compiled.tables.throttles(0, [f, q]));
                 assert_eq!(flags, 0, "{inverse} at {f} {q}: {throttles:?}");
             }
         }

@@ -222,9 +222,11 @@ fn real_pairs() -> Vec<(String, String)> {
             let text = frames::toml_with_pair(&text, &places, &channels, Options::default());
             let own =
                 Airframe::read(&Source::new("own.toml", text)).unwrap_or_else(|faults| panic!("{faults}"));
-            let least = EnclosedPairMap::new(&own.pair).least_idle(1.0).expect("an idle");
+            let least = EnclosedPairMap::new(&own.pairs[0])
+                .least_idle(1.0)
+                .expect("an idle");
             let idle = IDLE * least;
-            let [idle_n, _] = PairMap::new(&own.pair, &own.throttle).efforts([idle; 2]);
+            let [idle_n, _] = PairMap::new(&own.pairs[0], &own.throttle).efforts([idle; 2]);
             let widest = maps::with_throttle(&identified, [idle, 1.0]);
             let text = frames::toml_with_pair(&widest, &places, &channels, Options::default());
             // Beyond the throttles of its bench a map may give a negative thrust, or all but fold.

@@ -17,7 +17,7 @@
 pub mod isae_x8 {
     use ::mixer_rt::{self as rt, tables};
     const _: () = ::core::assert!(
-        tables::FORMAT == 1u32,
+        tables::FORMAT == 2u32,
         "generated for another version of mixer-rt: use mixer-compiler or mixer-macros of its version, and generate the file anew"
     );
     /// Number of coaxial units.
@@ -103,7 +103,6 @@ pub mod isae_x8 {
             CHANNELS,
             _,
             _,
-            _,
         >(&TABLES, setpoint, conditions.into(), rt::Health::GOOD)
     }
     /// [`mix`] with the rotors out that `health` names by channel.
@@ -121,7 +120,6 @@ pub mod isae_x8 {
             CHANNELS,
             _,
             _,
-            _,
         >(&TABLES, setpoint, conditions.into(), health)
     }
     /// The units: rows of M+, columns of M, output channels.
@@ -130,72 +128,88 @@ pub mod isae_x8 {
             allocation: [[-0.7856694, 0.7856694, 0.0, 0.25], [0.0, 0.0, 0.25, 0.0]],
             effectiveness: [[-0.3182, 0.3182, 0.0, 1.0], [0.0, 0.0, 1.0, 0.0]],
             channels: [0, 4],
+            kind: 0,
         },
         tables::Unit {
             allocation: [[0.7856694, 0.7856694, 0.0, 0.25], [0.0, 0.0, -0.25, 0.0]],
             effectiveness: [[0.3182, 0.3182, 0.0, 1.0], [0.0, 0.0, -1.0, 0.0]],
             channels: [1, 5],
+            kind: 0,
         },
         tables::Unit {
             allocation: [[0.7856694, -0.7856694, 0.0, 0.25], [0.0, 0.0, 0.25, 0.0]],
             effectiveness: [[0.3182, -0.3182, 0.0, 1.0], [0.0, 0.0, 1.0, 0.0]],
             channels: [2, 6],
+            kind: 0,
         },
         tables::Unit {
             allocation: [[-0.7856694, -0.7856694, 0.0, 0.25], [0.0, 0.0, -0.25, 0.0]],
             effectiveness: [[-0.3182, -0.3182, 0.0, 1.0], [0.0, 0.0, -1.0, 0.0]],
             channels: [3, 7],
+            kind: 0,
         },
     ];
-    /// The forward map of a unit: thrust and torque as polynomials of both throttles.
-    const PAIR: tables::Pair<tables::Biquadratic> = tables::Pair {
-        thrust: tables::Biquadratic([
-            5.2075,
-            -2.1892,
-            12.3604,
-            -10.2432,
-            4.4427,
-            2.764,
-            12.2092,
-            0.2363,
-        ]),
-        torque: tables::Biquadratic([
-            -0.0673,
-            -0.0606,
-            -0.1312,
-            0.0953,
-            0.0364,
-            -0.0907,
-            0.1441,
-            0.072,
-        ]),
-    };
-    /// Thrust and torque of the upper and of the lower rotor alone.
-    const ROTORS_ALONE: [tables::SingleRotor; 2] = [
-        tables::SingleRotor {
-            thrust: [0.0, 0.0, 12.3604, 2.764],
-            torque: [0.0, 0.0, -0.1312, -0.0907],
+    type Kinds = tables::PairKind<
+        tables::Biquadratic,
+        tables::PolynomialInverse<[f32; 6], 1>,
+    >;
+    /// What the units give: forward maps, rotors alone, inverse maps.
+    const KINDS: Kinds = tables::PairKind {
+        pair: tables::Pair {
+            thrust: tables::Biquadratic([
+                5.2075,
+                -2.1892,
+                12.3604,
+                -10.2432,
+                4.4427,
+                2.764,
+                12.2092,
+                0.2363,
+            ]),
+            torque: tables::Biquadratic([
+                -0.0673,
+                -0.0606,
+                -0.1312,
+                0.0953,
+                0.0364,
+                -0.0907,
+                0.1441,
+                0.072,
+            ]),
         },
-        tables::SingleRotor {
-            thrust: [0.0, 0.0, 12.2092, 0.2363],
-            torque: [0.0, 0.0, 0.1441, 0.072],
+        alone: [
+            tables::RotorAlone {
+                thrust: [0.0, 0.0, 12.3604, 2.764],
+                torque: [0.0, 0.0, -0.1312, -0.0907],
+            },
+            tables::RotorAlone {
+                thrust: [0.0, 0.0, 12.2092, 0.2363],
+                torque: [0.0, 0.0, 0.1441, 0.072],
+            },
+        ],
+        inverse: tables::PolynomialInverse {
+            forms: [
+                [0.040342588, -2.504363, 0.04923412],
+                [0.040342588, 3.0840058, 0.07635191],
+            ],
+            upper: [
+                -0.00635949,
+                -0.25598532,
+                1.1790247,
+                0.012056016,
+                0.34172016,
+                -0.3036902,
+            ],
+            lower: [
+                -0.018678555,
+                -0.092187606,
+                0.19416437,
+                -0.0368544,
+                1.1993,
+                -0.29747206,
+            ],
         },
-    ];
-    /// The inverse map of a unit.
-    const INVERSE: tables::PolynomialInverse<[f32; 6], 1> = tables::PolynomialInverse {
-        forms: [
-            [0.040342588, -2.504363, 0.04923412],
-            [0.040342588, 3.0840058, 0.07635191],
-        ],
-        upper: [
-            -0.00635949,
-            -0.25598532,
-            1.1790247,
-            0.012056016,
-            0.34172016,
-            -0.3036902,
-        ],
-        lower: [-0.018678555, -0.092187606, 0.19416437, -0.0368544, 1.1993, -0.29747206],
+        mean_square_slopes: [443.2581, 0.14420184],
     };
     /// How thrust and torque follow the battery's voltage, V.
     const VOLTAGE: ::core::option::Option<tables::Law<'static>> = ::core::option::Option::Some(tables::Law {
@@ -529,16 +543,9 @@ pub mod isae_x8 {
     };
     /// All tables; see `mixer_rt::tables` for their meaning and units.
     #[doc(hidden)]
-    pub static TABLES: tables::Tables<
-        'static,
-        tables::Biquadratic,
-        tables::PolynomialInverse<[f32; 6], 1>,
-        &tables::ClosedForm<'static>,
-    > = tables::Tables {
+    pub static TABLES: tables::Tables<'static, Kinds, &tables::ClosedForm<'static>> = tables::Tables {
         units: &UNIT_TABLES,
-        pair: PAIR,
-        singles: ROTORS_ALONE,
-        inverse: INVERSE,
+        kinds: KINDS,
         throttle: tables::ThrottleRange {
             min: 0.1,
             max: 1.0,
@@ -546,7 +553,6 @@ pub mod isae_x8 {
         voltage: VOLTAGE,
         air: AIR,
         row_scale: [0.12678374, 0.12678374, 4.595398, 0.040342588],
-        mean_square_slopes: [443.2581, 0.14420184],
         level_n: [2.453606, 98.69506],
         is_vertical: true,
         priorities: tables::Priorities {

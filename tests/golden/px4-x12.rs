@@ -19,7 +19,7 @@
 pub mod px4_x12 {
     use ::mixer_rt::{self as rt, tables};
     const _: () = ::core::assert!(
-        tables::FORMAT == 1u32,
+        tables::FORMAT == 2u32,
         "generated for another version of mixer-rt: use mixer-compiler or mixer-macros of its version, and generate the file anew"
     );
     /// Number of coaxial units.
@@ -105,7 +105,6 @@ pub mod px4_x12 {
             CHANNELS,
             _,
             _,
-            _,
         >(&TABLES, setpoint, conditions.into(), rt::Health::GOOD)
     }
     /// [`mix`] with the rotors out that `health` names by channel.
@@ -123,7 +122,6 @@ pub mod px4_x12 {
             CHANNELS,
             _,
             _,
-            _,
         >(&TABLES, setpoint, conditions.into(), health)
     }
     /// The units: rows of M+, columns of M, output channels.
@@ -135,6 +133,7 @@ pub mod px4_x12 {
             ],
             effectiveness: [[-1.0, 0.0, 0.0, 1.0], [0.0, 0.0, 1.0, 0.0]],
             channels: [0, 6],
+            kind: 0,
         },
         tables::Unit {
             allocation: [
@@ -143,6 +142,7 @@ pub mod px4_x12 {
             ],
             effectiveness: [[1.0, 0.0, 0.0, 1.0], [0.0, 0.0, -1.0, 0.0]],
             channels: [1, 7],
+            kind: 0,
         },
         tables::Unit {
             allocation: [
@@ -151,6 +151,7 @@ pub mod px4_x12 {
             ],
             effectiveness: [[0.5, 0.866025, 0.0, 1.0], [0.0, 0.0, 1.0, 0.0]],
             channels: [2, 8],
+            kind: 0,
         },
         tables::Unit {
             allocation: [
@@ -159,6 +160,7 @@ pub mod px4_x12 {
             ],
             effectiveness: [[-0.5, -0.866025, 0.0, 1.0], [0.0, 0.0, -1.0, 0.0]],
             channels: [3, 9],
+            kind: 0,
         },
         tables::Unit {
             allocation: [
@@ -167,6 +169,7 @@ pub mod px4_x12 {
             ],
             effectiveness: [[-0.5, 0.866025, 0.0, 1.0], [0.0, 0.0, -1.0, 0.0]],
             channels: [4, 10],
+            kind: 0,
         },
         tables::Unit {
             allocation: [
@@ -175,57 +178,70 @@ pub mod px4_x12 {
             ],
             effectiveness: [[0.5, -0.866025, 0.0, 1.0], [0.0, 0.0, 1.0, 0.0]],
             channels: [5, 11],
+            kind: 0,
         },
     ];
-    /// The forward map of a unit: thrust and torque as polynomials of both throttles.
-    const PAIR: tables::Pair<tables::Biquadratic> = tables::Pair {
-        thrust: tables::Biquadratic([
-            5.2075,
-            -2.1892,
-            12.3604,
-            -10.2432,
-            4.4427,
-            2.764,
-            12.2092,
-            0.2363,
-        ]),
-        torque: tables::Biquadratic([
-            -0.0673,
-            -0.0606,
-            -0.1312,
-            0.0953,
-            0.0364,
-            -0.0907,
-            0.1441,
-            0.072,
-        ]),
-    };
-    /// Thrust and torque of the upper and of the lower rotor alone.
-    const ROTORS_ALONE: [tables::SingleRotor; 2] = [
-        tables::SingleRotor {
-            thrust: [0.0, 0.0, 12.3604, 2.764],
-            torque: [0.0, 0.0, -0.1312, -0.0907],
+    type Kinds = tables::PairKind<
+        tables::Biquadratic,
+        tables::PolynomialInverse<[f32; 6], 1>,
+    >;
+    /// What the units give: forward maps, rotors alone, inverse maps.
+    const KINDS: Kinds = tables::PairKind {
+        pair: tables::Pair {
+            thrust: tables::Biquadratic([
+                5.2075,
+                -2.1892,
+                12.3604,
+                -10.2432,
+                4.4427,
+                2.764,
+                12.2092,
+                0.2363,
+            ]),
+            torque: tables::Biquadratic([
+                -0.0673,
+                -0.0606,
+                -0.1312,
+                0.0953,
+                0.0364,
+                -0.0907,
+                0.1441,
+                0.072,
+            ]),
         },
-        tables::SingleRotor {
-            thrust: [0.0, 0.0, 12.2092, 0.2363],
-            torque: [0.0, 0.0, 0.1441, 0.072],
+        alone: [
+            tables::RotorAlone {
+                thrust: [0.0, 0.0, 12.3604, 2.764],
+                torque: [0.0, 0.0, -0.1312, -0.0907],
+            },
+            tables::RotorAlone {
+                thrust: [0.0, 0.0, 12.2092, 0.2363],
+                torque: [0.0, 0.0, 0.1441, 0.072],
+            },
+        ],
+        inverse: tables::PolynomialInverse {
+            forms: [
+                [0.040342588, -2.504363, 0.04923412],
+                [0.040342588, 3.0840058, 0.07635191],
+            ],
+            upper: [
+                -0.00635949,
+                -0.25598532,
+                1.1790247,
+                0.012056016,
+                0.34172016,
+                -0.3036902,
+            ],
+            lower: [
+                -0.018678555,
+                -0.092187606,
+                0.19416437,
+                -0.0368544,
+                1.1993,
+                -0.29747206,
+            ],
         },
-    ];
-    /// The inverse map of a unit.
-    const INVERSE: tables::PolynomialInverse<[f32; 6], 1> = tables::PolynomialInverse {
-        forms: [
-            [0.040342588, -2.504363, 0.04923412],
-            [0.040342588, 3.0840058, 0.07635191],
-        ],
-        upper: [
-            -0.00635949,
-            -0.25598532,
-            1.1790247,
-            0.012056016,
-            0.34172016,
-            -0.3036902,
-        ],
-        lower: [-0.018678555, -0.092187606, 0.19416437, -0.0368544, 1.1993, -0.29747206],
+        mean_square_slopes: [443.2581, 0.14420184],
     };
     /// How thrust and torque follow the battery's voltage, V.
     const VOLTAGE: ::core::option::Option<tables::Law<'static>> = ::core::option::Option::Some(tables::Law {
@@ -257,16 +273,9 @@ pub mod px4_x12 {
     const CLOSED_FORM: tables::NoClosedForm = tables::NoClosedForm;
     /// All tables; see `mixer_rt::tables` for their meaning and units.
     #[doc(hidden)]
-    pub static TABLES: tables::Tables<
-        'static,
-        tables::Biquadratic,
-        tables::PolynomialInverse<[f32; 6], 1>,
-        tables::NoClosedForm,
-    > = tables::Tables {
+    pub static TABLES: tables::Tables<'static, Kinds, tables::NoClosedForm> = tables::Tables {
         units: &UNIT_TABLES,
-        pair: PAIR,
-        singles: ROTORS_ALONE,
-        inverse: INVERSE,
+        kinds: KINDS,
         throttle: tables::ThrottleRange {
             min: 0.1,
             max: 1.0,
@@ -274,8 +283,7 @@ pub mod px4_x12 {
         voltage: VOLTAGE,
         air: AIR,
         row_scale: [0.060513884, 0.06987545, 4.595398, 0.040342588],
-        mean_square_slopes: [443.2581, 0.14420184],
-        level_n: [3.6804087, 148.04257],
+        level_n: [3.6804092, 148.04259],
         is_vertical: true,
         priorities: tables::Priorities {
             airmode: tables::Airmode::RollPitch,

@@ -17,7 +17,7 @@
 pub mod x8_11in_cubic {
     use ::mixer_rt::{self as rt, tables};
     const _: () = ::core::assert!(
-        tables::FORMAT == 1u32,
+        tables::FORMAT == 2u32,
         "generated for another version of mixer-rt: use mixer-compiler or mixer-macros of its version, and generate the file anew"
     );
     /// Number of coaxial units.
@@ -103,7 +103,6 @@ pub mod x8_11in_cubic {
             CHANNELS,
             _,
             _,
-            _,
         >(&TABLES, setpoint, conditions.into(), rt::Health::GOOD)
     }
     /// [`mix`] with the rotors out that `health` names by channel.
@@ -121,7 +120,6 @@ pub mod x8_11in_cubic {
             CHANNELS,
             _,
             _,
-            _,
         >(&TABLES, setpoint, conditions.into(), health)
     }
     /// The units: rows of M+, columns of M, output channels.
@@ -130,81 +128,87 @@ pub mod x8_11in_cubic {
             allocation: [[-1.1785113, 1.1785113, 0.0, 0.25], [0.0, 0.0, 0.25, 0.0]],
             effectiveness: [[-0.21213204, 0.21213204, 0.0, 1.0], [0.0, 0.0, 1.0, 0.0]],
             channels: [0, 4],
+            kind: 0,
         },
         tables::Unit {
             allocation: [[-1.1785113, -1.1785113, 0.0, 0.25], [0.0, 0.0, -0.25, 0.0]],
             effectiveness: [[-0.21213204, -0.21213204, 0.0, 1.0], [0.0, 0.0, -1.0, 0.0]],
             channels: [1, 5],
+            kind: 0,
         },
         tables::Unit {
             allocation: [[1.1785113, -1.1785113, 0.0, 0.25], [0.0, 0.0, 0.25, 0.0]],
             effectiveness: [[0.21213204, -0.21213204, 0.0, 1.0], [0.0, 0.0, 1.0, 0.0]],
             channels: [2, 6],
+            kind: 0,
         },
         tables::Unit {
             allocation: [[1.1785113, 1.1785113, 0.0, 0.25], [0.0, 0.0, -0.25, 0.0]],
             effectiveness: [[0.21213204, 0.21213204, 0.0, 1.0], [0.0, 0.0, -1.0, 0.0]],
             channels: [3, 7],
+            kind: 0,
         },
     ];
-    /// The forward map of a unit: thrust and torque as polynomials of both throttles.
-    const PAIR: tables::Pair<tables::Cubic> = tables::Pair {
-        thrust: tables::Cubic([
-            -1.568439,
-            -3.705443,
-            4.290864,
-            -0.2664861,
-            10.38016,
-            -2.598064,
-            6.913037,
-            2.109963,
-            4.025217,
-        ]),
-        torque: tables::Cubic([
-            0.009379736,
-            -0.03749241,
-            0.04187819,
-            -0.02220356,
-            -0.1813082,
-            0.01354701,
-            0.1624532,
-            -0.06034118,
-            0.04840858,
-        ]),
-    };
-    /// Thrust and torque of the upper and of the lower rotor alone.
-    const ROTORS_ALONE: [tables::SingleRotor; 2] = [
-        tables::SingleRotor {
-            thrust: [0.0, -1.568439, 10.38016, 2.109963],
-            torque: [0.0, 0.009379736, -0.1813082, -0.06034118],
+    type Kinds = tables::PairKind<tables::Cubic, tables::PolynomialInverse<[f32; 6], 1>>;
+    /// What the units give: forward maps, rotors alone, inverse maps.
+    const KINDS: Kinds = tables::PairKind {
+        pair: tables::Pair {
+            thrust: tables::Cubic([
+                -1.568439,
+                -3.705443,
+                4.290864,
+                -0.2664861,
+                10.38016,
+                -2.598064,
+                6.913037,
+                2.109963,
+                4.025217,
+            ]),
+            torque: tables::Cubic([
+                0.009379736,
+                -0.03749241,
+                0.04187819,
+                -0.02220356,
+                -0.1813082,
+                0.01354701,
+                0.1624532,
+                -0.06034118,
+                0.04840858,
+            ]),
         },
-        tables::SingleRotor {
-            thrust: [0.0, -0.2664861, 6.913037, 4.025217],
-            torque: [0.0, -0.02220356, 0.1624532, 0.04840858],
+        alone: [
+            tables::RotorAlone {
+                thrust: [0.0, -1.568439, 10.38016, 2.109963],
+                torque: [0.0, 0.009379736, -0.1813082, -0.06034118],
+            },
+            tables::RotorAlone {
+                thrust: [0.0, -0.2664861, 6.913037, 4.025217],
+                torque: [0.0, -0.02220356, 0.1624532, 0.04840858],
+            },
+        ],
+        inverse: tables::PolynomialInverse {
+            forms: [
+                [0.055495482, -3.066655, 0.04458168],
+                [0.055495482, 2.6901805, 0.02081367],
+            ],
+            upper: [
+                -0.06877278,
+                0.08591076,
+                1.1396166,
+                0.0068869186,
+                -0.02602645,
+                -0.24296393,
+            ],
+            lower: [
+                0.17963968,
+                -0.06500615,
+                -0.082979254,
+                0.010252928,
+                1.0797458,
+                -0.15099555,
+            ],
         },
-    ];
-    /// The inverse map of a unit.
-    const INVERSE: tables::PolynomialInverse<[f32; 6], 1> = tables::PolynomialInverse {
-        forms: [
-            [0.055495482, -3.066655, 0.04458168],
-            [0.055495482, 2.6901805, 0.02081367],
-        ],
-        upper: [
-            -0.06877278,
-            0.08591076,
-            1.1396166,
-            0.0068869186,
-            -0.02602645,
-            -0.24296393,
-        ],
-        lower: [
-            0.17963968,
-            -0.06500615,
-            -0.082979254,
-            0.010252928,
-            1.0797458,
-            -0.15099555,
-        ],
+        mean_square_slopes: [227.60522, 0.11379245],
     };
     /// How thrust and torque follow the battery's voltage, V.
     const VOLTAGE: ::core::option::Option<tables::Law<'static>> = ::core::option::Option::None;
@@ -596,16 +600,9 @@ pub mod x8_11in_cubic {
     };
     /// All tables; see `mixer_rt::tables` for their meaning and units.
     #[doc(hidden)]
-    pub static TABLES: tables::Tables<
-        'static,
-        tables::Cubic,
-        tables::PolynomialInverse<[f32; 6], 1>,
-        &tables::ClosedForm<'static>,
-    > = tables::Tables {
+    pub static TABLES: tables::Tables<'static, Kinds, &tables::ClosedForm<'static>> = tables::Tables {
         units: &UNIT_TABLES,
-        pair: PAIR,
-        singles: ROTORS_ALONE,
-        inverse: INVERSE,
+        kinds: KINDS,
         throttle: tables::ThrottleRange {
             min: 0.07,
             max: 0.95,
@@ -613,7 +610,6 @@ pub mod x8_11in_cubic {
         voltage: VOLTAGE,
         air: AIR,
         row_scale: [0.2616082, 0.2616082, 4.76171, 0.055495482],
-        mean_square_slopes: [227.60522, 0.11379245],
         level_n: [2.2240348, 69.13364],
         is_vertical: true,
         priorities: tables::Priorities {

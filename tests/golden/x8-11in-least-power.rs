@@ -17,7 +17,7 @@
 pub mod x8_11in_least_power {
     use ::mixer_rt::{self as rt, tables};
     const _: () = ::core::assert!(
-        tables::FORMAT == 1u32,
+        tables::FORMAT == 2u32,
         "generated for another version of mixer-rt: use mixer-compiler or mixer-macros of its version, and generate the file anew"
     );
     /// Number of coaxial units.
@@ -103,7 +103,6 @@ pub mod x8_11in_least_power {
             CHANNELS,
             _,
             _,
-            _,
         >(&TABLES, setpoint, conditions.into(), rt::Health::GOOD)
     }
     /// [`mix`] with the rotors out that `health` names by channel.
@@ -121,7 +120,6 @@ pub mod x8_11in_least_power {
             CHANNELS,
             _,
             _,
-            _,
         >(&TABLES, setpoint, conditions.into(), health)
     }
     /// The units: rows of M+, columns of M, output channels.
@@ -130,74 +128,87 @@ pub mod x8_11in_least_power {
             allocation: [[-1.1785113, 1.1785113, 0.0, 0.25], [0.0, 0.0, 0.25, 0.0]],
             effectiveness: [[-0.21213204, 0.21213204, 0.0, 1.0], [0.0, 0.0, 1.0, 0.0]],
             channels: [0, 4],
+            kind: 0,
         },
         tables::Unit {
             allocation: [[-1.1785113, -1.1785113, 0.0, 0.25], [0.0, 0.0, -0.25, 0.0]],
             effectiveness: [[-0.21213204, -0.21213204, 0.0, 1.0], [0.0, 0.0, -1.0, 0.0]],
             channels: [1, 5],
+            kind: 0,
         },
         tables::Unit {
             allocation: [[1.1785113, -1.1785113, 0.0, 0.25], [0.0, 0.0, 0.25, 0.0]],
             effectiveness: [[0.21213204, -0.21213204, 0.0, 1.0], [0.0, 0.0, 1.0, 0.0]],
             channels: [2, 6],
+            kind: 0,
         },
         tables::Unit {
             allocation: [[1.1785113, 1.1785113, 0.0, 0.25], [0.0, 0.0, -0.25, 0.0]],
             effectiveness: [[0.21213204, 0.21213204, 0.0, 1.0], [0.0, 0.0, -1.0, 0.0]],
             channels: [3, 7],
+            kind: 0,
         },
     ];
-    /// The forward map of a unit: thrust and torque as polynomials of both throttles.
-    const PAIR: tables::Pair<tables::Cubic> = tables::Pair {
-        thrust: tables::Cubic([
-            3.595946,
-            -4.874587,
-            3.388784,
-            5.451653,
-            5.834651,
-            -0.6740723,
-            2.892107,
-            2.691148,
-            4.087008,
-        ]),
-        torque: tables::Cubic([
-            -0.1129228,
-            -0.06471741,
-            0.06636398,
-            0.1128706,
-            -0.04634804,
-            0.01034713,
-            0.02015433,
-            -0.0982252,
-            0.07982942,
-        ]),
-    };
-    /// Thrust and torque of the upper and of the lower rotor alone.
-    const ROTORS_ALONE: [tables::SingleRotor; 2] = [
-        tables::SingleRotor {
-            thrust: [0.0, 0.2391653, 10.59278, 2.009882],
-            torque: [0.0, -0.07481187, -0.09436285, -0.06417637],
+    type Kinds = tables::PairKind<tables::Cubic, tables::PolynomialInverse<[f32; 6], 1>>;
+    /// What the units give: forward maps, rotors alone, inverse maps.
+    const KINDS: Kinds = tables::PairKind {
+        pair: tables::Pair {
+            thrust: tables::Cubic([
+                3.595946,
+                -4.874587,
+                3.388784,
+                5.451653,
+                5.834651,
+                -0.6740723,
+                2.892107,
+                2.691148,
+                4.087008,
+            ]),
+            torque: tables::Cubic([
+                -0.1129228,
+                -0.06471741,
+                0.06636398,
+                0.1128706,
+                -0.04634804,
+                0.01034713,
+                0.02015433,
+                -0.0982252,
+                0.07982942,
+            ]),
         },
-        tables::SingleRotor {
-            thrust: [0.0, 3.441271, 5.968748, 2.982514],
-            torque: [0.0, 0.06038575, 0.09633247, 0.0561843],
+        alone: [
+            tables::RotorAlone {
+                thrust: [0.0, 0.2391653, 10.59278, 2.009882],
+                torque: [0.0, -0.07481187, -0.09436285, -0.06417637],
+            },
+            tables::RotorAlone {
+                thrust: [0.0, 3.441271, 5.968748, 2.982514],
+                torque: [0.0, 0.06038575, 0.09633247, 0.0561843],
+            },
+        ],
+        inverse: tables::PolynomialInverse {
+            forms: [
+                [0.049529243, -2.8848193, 0.0022549573],
+                [0.049529243, 2.3281388, -0.0042076795],
+            ],
+            upper: [
+                -0.07681891,
+                0.058120478,
+                1.0599015,
+                0.004241111,
+                -0.0025108568,
+                -0.12418173,
+            ],
+            lower: [
+                0.0702942,
+                -0.08243743,
+                0.056353893,
+                -0.10056205,
+                1.1459298,
+                -0.1045234,
+            ],
         },
-    ];
-    /// The inverse map of a unit.
-    const INVERSE: tables::PolynomialInverse<[f32; 6], 1> = tables::PolynomialInverse {
-        forms: [
-            [0.049529243, -2.8848193, 0.0022549573],
-            [0.049529243, 2.3281388, -0.0042076795],
-        ],
-        upper: [
-            -0.07681891,
-            0.058120478,
-            1.0599015,
-            0.004241111,
-            -0.0025108568,
-            -0.12418173,
-        ],
-        lower: [0.0702942, -0.08243743, 0.056353893, -0.10056205, 1.1459298, -0.1045234],
+        mean_square_slopes: [321.62103, 0.15172847],
     };
     /// How thrust and torque follow the battery's voltage, V.
     const VOLTAGE: ::core::option::Option<tables::Law<'static>> = ::core::option::Option::Some(tables::Law {
@@ -629,16 +640,9 @@ pub mod x8_11in_least_power {
     };
     /// All tables; see `mixer_rt::tables` for their meaning and units.
     #[doc(hidden)]
-    pub static TABLES: tables::Tables<
-        'static,
-        tables::Cubic,
-        tables::PolynomialInverse<[f32; 6], 1>,
-        &tables::ClosedForm<'static>,
-    > = tables::Tables {
+    pub static TABLES: tables::Tables<'static, Kinds, &tables::ClosedForm<'static>> = tables::Tables {
         units: &UNIT_TABLES,
-        pair: PAIR,
-        singles: ROTORS_ALONE,
-        inverse: INVERSE,
+        kinds: KINDS,
         throttle: tables::ThrottleRange {
             min: 0.07,
             max: 0.95,
@@ -646,8 +650,7 @@ pub mod x8_11in_least_power {
         voltage: VOLTAGE,
         air: AIR,
         row_scale: [0.23348309, 0.23348309, 4.3606005, 0.049529243],
-        mean_square_slopes: [321.62103, 0.15172847],
-        level_n: [2.339429, 76.879814],
+        level_n: [2.339429, 76.87981],
         is_vertical: true,
         priorities: tables::Priorities {
             airmode: tables::Airmode::Disabled,

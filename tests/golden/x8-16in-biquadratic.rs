@@ -17,7 +17,7 @@
 pub mod x8_16in_biquadratic {
     use ::mixer_rt::{self as rt, tables};
     const _: () = ::core::assert!(
-        tables::FORMAT == 1u32,
+        tables::FORMAT == 2u32,
         "generated for another version of mixer-rt: use mixer-compiler or mixer-macros of its version, and generate the file anew"
     );
     /// Number of coaxial units.
@@ -103,7 +103,6 @@ pub mod x8_16in_biquadratic {
             CHANNELS,
             _,
             _,
-            _,
         >(&TABLES, setpoint, conditions.into(), rt::Health::GOOD)
     }
     /// [`mix`] with the rotors out that `health` names by channel.
@@ -121,7 +120,6 @@ pub mod x8_16in_biquadratic {
             CHANNELS,
             _,
             _,
-            _,
         >(&TABLES, setpoint, conditions.into(), health)
     }
     /// The units: rows of M+, columns of M, output channels.
@@ -130,87 +128,96 @@ pub mod x8_16in_biquadratic {
             allocation: [[-0.7856742, 0.7856742, 0.0, 0.25], [0.0, 0.0, 0.25, 0.0]],
             effectiveness: [[-0.31819806, 0.31819806, 0.0, 1.0], [0.0, 0.0, 1.0, 0.0]],
             channels: [0, 4],
+            kind: 0,
         },
         tables::Unit {
             allocation: [[-0.7856742, -0.7856742, 0.0, 0.25], [0.0, 0.0, -0.25, 0.0]],
             effectiveness: [[-0.31819806, -0.31819806, 0.0, 1.0], [0.0, 0.0, -1.0, 0.0]],
             channels: [1, 5],
+            kind: 0,
         },
         tables::Unit {
             allocation: [[0.7856742, -0.7856742, 0.0, 0.25], [0.0, 0.0, 0.25, 0.0]],
             effectiveness: [[0.31819806, -0.31819806, 0.0, 1.0], [0.0, 0.0, 1.0, 0.0]],
             channels: [2, 6],
+            kind: 0,
         },
         tables::Unit {
             allocation: [[0.7856742, 0.7856742, 0.0, 0.25], [0.0, 0.0, -0.25, 0.0]],
             effectiveness: [[0.31819806, 0.31819806, 0.0, 1.0], [0.0, 0.0, -1.0, 0.0]],
             channels: [3, 7],
+            kind: 0,
         },
     ];
-    /// The forward map of a unit: thrust and torque as polynomials of both throttles.
-    const PAIR: tables::Pair<tables::Biquadratic> = tables::Pair {
-        thrust: tables::Biquadratic([
-            39.15172,
-            -47.96697,
-            25.32957,
-            -30.10932,
-            32.69407,
-            0.1466085,
-            23.36379,
-            3.664099,
-        ]),
-        torque: tables::Biquadratic([
-            0.1708593,
-            -0.246776,
-            -0.2830277,
-            0.07627449,
-            0.01869433,
-            -0.3241275,
-            0.2588536,
-            0.3005523,
-        ]),
-    };
-    /// Thrust and torque of the upper and of the lower rotor alone.
-    const ROTORS_ALONE: [tables::SingleRotor; 2] = [
-        tables::SingleRotor {
-            thrust: [0.0, 0.0, 25.32957, 0.1466085],
-            torque: [0.0, 0.0, -0.2830277, -0.3241275],
+    type Kinds = tables::PairKind<
+        tables::Biquadratic,
+        tables::PolynomialInverse<[f32; 10], 1>,
+    >;
+    /// What the units give: forward maps, rotors alone, inverse maps.
+    const KINDS: Kinds = tables::PairKind {
+        pair: tables::Pair {
+            thrust: tables::Biquadratic([
+                39.15172,
+                -47.96697,
+                25.32957,
+                -30.10932,
+                32.69407,
+                0.1466085,
+                23.36379,
+                3.664099,
+            ]),
+            torque: tables::Biquadratic([
+                0.1708593,
+                -0.246776,
+                -0.2830277,
+                0.07627449,
+                0.01869433,
+                -0.3241275,
+                0.2588536,
+                0.3005523,
+            ]),
         },
-        tables::SingleRotor {
-            thrust: [0.0, 0.0, 23.36379, 3.664099],
-            torque: [0.0, 0.0, 0.2588536, 0.3005523],
+        alone: [
+            tables::RotorAlone {
+                thrust: [0.0, 0.0, 25.32957, 0.1466085],
+                torque: [0.0, 0.0, -0.2830277, -0.3241275],
+            },
+            tables::RotorAlone {
+                thrust: [0.0, 0.0, 23.36379, 3.664099],
+                torque: [0.0, 0.0, 0.2588536, 0.3005523],
+            },
+        ],
+        inverse: tables::PolynomialInverse {
+            forms: [
+                [0.023797631, -1.4680592, 0.19563453],
+                [0.023797631, 1.2310524, 0.14608589],
+            ],
+            upper: [
+                0.066516794,
+                0.57594967,
+                -0.5854213,
+                0.38758466,
+                -1.6622436,
+                2.2200458,
+                0.07321676,
+                -0.49337763,
+                1.2622051,
+                -1.0302194,
+            ],
+            lower: [
+                0.15232214,
+                0.38774604,
+                -0.6023947,
+                0.26403317,
+                -1.3505657,
+                1.3051378,
+                -0.011389731,
+                -0.22347493,
+                1.8884587,
+                -0.93106043,
+            ],
         },
-    ];
-    /// The inverse map of a unit.
-    const INVERSE: tables::PolynomialInverse<[f32; 10], 1> = tables::PolynomialInverse {
-        forms: [
-            [0.023797631, -1.4680592, 0.19563453],
-            [0.023797631, 1.2310524, 0.14608589],
-        ],
-        upper: [
-            0.066516794,
-            0.57594967,
-            -0.5854213,
-            0.38758466,
-            -1.6622436,
-            2.2200458,
-            0.07321676,
-            -0.49337763,
-            1.2622051,
-            -1.0302194,
-        ],
-        lower: [
-            0.15232214,
-            0.38774604,
-            -0.6023947,
-            0.26403317,
-            -1.3505657,
-            1.3051378,
-            -0.011389731,
-            -0.22347493,
-            1.8884587,
-            -0.93106043,
-        ],
+        mean_square_slopes: [1275.6128, 0.83707935],
     };
     /// How thrust and torque follow the battery's voltage, V.
     const VOLTAGE: ::core::option::Option<tables::Law<'static>> = ::core::option::Option::None;
@@ -570,16 +577,9 @@ pub mod x8_16in_biquadratic {
     };
     /// All tables; see `mixer_rt::tables` for their meaning and units.
     #[doc(hidden)]
-    pub static TABLES: tables::Tables<
-        'static,
-        tables::Biquadratic,
-        tables::PolynomialInverse<[f32; 10], 1>,
-        &tables::ClosedForm<'static>,
-    > = tables::Tables {
+    pub static TABLES: tables::Tables<'static, Kinds, &tables::ClosedForm<'static>> = tables::Tables {
         units: &UNIT_TABLES,
-        pair: PAIR,
-        singles: ROTORS_ALONE,
-        inverse: INVERSE,
+        kinds: KINDS,
         throttle: tables::ThrottleRange {
             min: 0.07,
             max: 0.95,
@@ -587,7 +587,6 @@ pub mod x8_16in_biquadratic {
         voltage: VOLTAGE,
         air: AIR,
         row_scale: [0.07478874, 0.07478874, 1.804133, 0.023797631],
-        mean_square_slopes: [1275.6128, 0.83707935],
         level_n: [2.71441, 163.2656],
         is_vertical: true,
         priorities: tables::Priorities {

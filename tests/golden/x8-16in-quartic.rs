@@ -17,7 +17,7 @@
 pub mod x8_16in_quartic {
     use ::mixer_rt::{self as rt, tables};
     const _: () = ::core::assert!(
-        tables::FORMAT == 1u32,
+        tables::FORMAT == 2u32,
         "generated for another version of mixer-rt: use mixer-compiler or mixer-macros of its version, and generate the file anew"
     );
     /// Number of coaxial units.
@@ -103,7 +103,6 @@ pub mod x8_16in_quartic {
             CHANNELS,
             _,
             _,
-            _,
         >(&TABLES, setpoint, conditions.into(), rt::Health::GOOD)
     }
     /// [`mix`] with the rotors out that `health` names by channel.
@@ -121,7 +120,6 @@ pub mod x8_16in_quartic {
             CHANNELS,
             _,
             _,
-            _,
         >(&TABLES, setpoint, conditions.into(), health)
     }
     /// The units: rows of M+, columns of M, output channels.
@@ -130,91 +128,100 @@ pub mod x8_16in_quartic {
             allocation: [[-0.7856742, 0.7856742, 0.0, 0.25], [0.0, 0.0, 0.25, 0.0]],
             effectiveness: [[-0.31819806, 0.31819806, 0.0, 1.0], [0.0, 0.0, 1.0, 0.0]],
             channels: [0, 4],
+            kind: 0,
         },
         tables::Unit {
             allocation: [[-0.7856742, -0.7856742, 0.0, 0.25], [0.0, 0.0, -0.25, 0.0]],
             effectiveness: [[-0.31819806, -0.31819806, 0.0, 1.0], [0.0, 0.0, -1.0, 0.0]],
             channels: [1, 5],
+            kind: 0,
         },
         tables::Unit {
             allocation: [[0.7856742, -0.7856742, 0.0, 0.25], [0.0, 0.0, 0.25, 0.0]],
             effectiveness: [[0.31819806, -0.31819806, 0.0, 1.0], [0.0, 0.0, 1.0, 0.0]],
             channels: [2, 6],
+            kind: 0,
         },
         tables::Unit {
             allocation: [[0.7856742, 0.7856742, 0.0, 0.25], [0.0, 0.0, -0.25, 0.0]],
             effectiveness: [[0.31819806, 0.31819806, 0.0, 1.0], [0.0, 0.0, -1.0, 0.0]],
             channels: [3, 7],
+            kind: 0,
         },
     ];
-    /// The forward map of a unit: thrust and torque as polynomials of both throttles.
-    const PAIR: tables::Pair<tables::Quartic> = tables::Pair {
-        thrust: tables::Quartic([
-            5.017811,
-            11.87074,
-            -1.677,
-            5.645145,
-            -31.21384,
-            -27.33077,
-            -25.15259,
-            7.319317,
-            39.612,
-            51.63577,
-            -4.318421,
-            11.22456,
-            -4.662869,
-            5.334038,
-        ]),
-        torque: tables::Quartic([
-            -0.03087651,
-            -0.03181241,
-            0.1934767,
-            0.1255658,
-            -0.4149023,
-            0.4061824,
-            -0.3772689,
-            -0.01452353,
-            0.2985188,
-            -0.8303414,
-            0.09692265,
-            0.5926543,
-            -0.0513442,
-            -0.003942542,
-        ]),
-    };
-    /// Thrust and torque of the upper and of the lower rotor alone.
-    const ROTORS_ALONE: [tables::SingleRotor; 2] = [
-        tables::SingleRotor {
-            thrust: [5.017811, -27.33077, 51.63577, -4.662869],
-            torque: [-0.03087651, 0.4061824, -0.8303414, -0.0513442],
+    type Kinds = tables::PairKind<
+        tables::Quartic,
+        tables::PolynomialInverse<[f32; 6], 1>,
+    >;
+    /// What the units give: forward maps, rotors alone, inverse maps.
+    const KINDS: Kinds = tables::PairKind {
+        pair: tables::Pair {
+            thrust: tables::Quartic([
+                5.017811,
+                11.87074,
+                -1.677,
+                5.645145,
+                -31.21384,
+                -27.33077,
+                -25.15259,
+                7.319317,
+                39.612,
+                51.63577,
+                -4.318421,
+                11.22456,
+                -4.662869,
+                5.334038,
+            ]),
+            torque: tables::Quartic([
+                -0.03087651,
+                -0.03181241,
+                0.1934767,
+                0.1255658,
+                -0.4149023,
+                0.4061824,
+                -0.3772689,
+                -0.01452353,
+                0.2985188,
+                -0.8303414,
+                0.09692265,
+                0.5926543,
+                -0.0513442,
+                -0.003942542,
+            ]),
         },
-        tables::SingleRotor {
-            thrust: [-31.21384, 39.612, 11.22456, 5.334038],
-            torque: [-0.4149023, 0.2985188, 0.5926543, -0.003942542],
+        alone: [
+            tables::RotorAlone {
+                thrust: [5.017811, -27.33077, 51.63577, -4.662869],
+                torque: [-0.03087651, 0.4061824, -0.8303414, -0.0513442],
+            },
+            tables::RotorAlone {
+                thrust: [-31.21384, 39.612, 11.22456, 5.334038],
+                torque: [-0.4149023, 0.2985188, 0.5926543, -0.003942542],
+            },
+        ],
+        inverse: tables::PolynomialInverse {
+            forms: [
+                [0.024828965, -1.5989246, 0.2026527],
+                [0.024828965, 1.1136725, 0.020582894],
+            ],
+            upper: [
+                0.029871274,
+                -0.08126983,
+                1.0379068,
+                0.11243699,
+                0.10398068,
+                -0.38178024,
+            ],
+            lower: [
+                0.14599212,
+                -0.07650533,
+                -0.013217936,
+                0.15530194,
+                0.75390774,
+                -0.023477925,
+            ],
         },
-    ];
-    /// The inverse map of a unit.
-    const INVERSE: tables::PolynomialInverse<[f32; 6], 1> = tables::PolynomialInverse {
-        forms: [
-            [0.024828965, -1.5989246, 0.2026527],
-            [0.024828965, 1.1136725, 0.020582894],
-        ],
-        upper: [
-            0.029871274,
-            -0.08126983,
-            1.0379068,
-            0.11243699,
-            0.10398068,
-            -0.38178024,
-        ],
-        lower: [
-            0.14599212,
-            -0.07650533,
-            -0.013217936,
-            0.15530194,
-            0.75390774,
-            -0.023477925,
-        ],
+        mean_square_slopes: [1383.7974, 0.9121876],
     };
     /// How thrust and torque follow the battery's voltage, V.
     const VOLTAGE: ::core::option::Option<tables::Law<'static>> = ::core::option::Option::None;
@@ -582,16 +589,9 @@ pub mod x8_16in_quartic {
     };
     /// All tables; see `mixer_rt::tables` for their meaning and units.
     #[doc(hidden)]
-    pub static TABLES: tables::Tables<
-        'static,
-        tables::Quartic,
-        tables::PolynomialInverse<[f32; 6], 1>,
-        &tables::ClosedForm<'static>,
-    > = tables::Tables {
+    pub static TABLES: tables::Tables<'static, Kinds, &tables::ClosedForm<'static>> = tables::Tables {
         units: &UNIT_TABLES,
-        pair: PAIR,
-        singles: ROTORS_ALONE,
-        inverse: INVERSE,
+        kinds: KINDS,
         throttle: tables::ThrottleRange {
             min: 0.19000001,
             max: 0.95,
@@ -599,7 +599,6 @@ pub mod x8_16in_quartic {
         voltage: VOLTAGE,
         air: AIR,
         row_scale: [0.07802991, 0.07802991, 2.0053651, 0.024828965],
-        mean_square_slopes: [1383.7974, 0.9121876],
         level_n: [11.306555, 156.33595],
         is_vertical: true,
         priorities: tables::Priorities {

@@ -17,7 +17,7 @@
 pub mod x8_22_16in {
     use ::mixer_rt::{self as rt, tables};
     const _: () = ::core::assert!(
-        tables::FORMAT == 1u32,
+        tables::FORMAT == 2u32,
         "generated for another version of mixer-rt: use mixer-compiler or mixer-macros of its version, and generate the file anew"
     );
     /// Number of coaxial units.
@@ -103,7 +103,6 @@ pub mod x8_22_16in {
             CHANNELS,
             _,
             _,
-            _,
         >(&TABLES, setpoint, conditions.into(), rt::Health::GOOD)
     }
     /// [`mix`] with the rotors out that `health` names by channel.
@@ -121,7 +120,6 @@ pub mod x8_22_16in {
             CHANNELS,
             _,
             _,
-            _,
         >(&TABLES, setpoint, conditions.into(), health)
     }
     /// The units: rows of M+, columns of M, output channels.
@@ -133,6 +131,7 @@ pub mod x8_22_16in {
             ],
             effectiveness: [[-0.42426407, 0.42426407, 0.0, 1.0], [0.0, 0.0, 1.0, 0.0]],
             channels: [0, 4],
+            kind: 0,
         },
         tables::Unit {
             allocation: [
@@ -141,6 +140,7 @@ pub mod x8_22_16in {
             ],
             effectiveness: [[-0.42426407, -0.42426407, 0.0, 1.0], [0.0, 0.0, -1.0, 0.0]],
             channels: [1, 5],
+            kind: 1,
         },
         tables::Unit {
             allocation: [
@@ -149,6 +149,7 @@ pub mod x8_22_16in {
             ],
             effectiveness: [[0.42426407, -0.42426407, 0.0, 1.0], [0.0, 0.0, 1.0, 0.0]],
             channels: [2, 6],
+            kind: 1,
         },
         tables::Unit {
             allocation: [
@@ -157,88 +158,86 @@ pub mod x8_22_16in {
             ],
             effectiveness: [[0.42426407, 0.42426407, 0.0, 1.0], [0.0, 0.0, -1.0, 0.0]],
             channels: [3, 7],
+            kind: 0,
         },
     ];
-    /// The forward map of a unit: thrust and torque as polynomials of both throttles.
-    const PAIR: tables::Pair<tables::Cubic> = tables::Pair {
-        thrust: tables::Cubic([
-            -21.87007,
-            -11.842,
-            37.73425,
-            -49.93869,
-            60.47546,
-            -41.77418,
-            96.15143,
-            2.633585,
-            -8.530369,
-        ]),
-        torque: tables::Cubic([
-            1.229847,
-            -0.2643563,
-            0.6215635,
-            -1.545362,
-            -2.649546,
-            -0.3664053,
-            2.943932,
-            0.3015207,
-            -0.4766169,
-        ]),
-    };
-    /// Thrust and torque of the upper and of the lower rotor alone.
-    const ROTORS_ALONE: [tables::SingleRotor; 2] = [
-        tables::SingleRotor {
-            thrust: [0.0, -21.87007, 60.47546, 2.633585],
-            torque: [0.0, 1.229847, -2.649546, 0.3015207],
-        },
-        tables::SingleRotor {
-            thrust: [0.0, -49.93869, 96.15143, -8.530369],
-            torque: [0.0, -1.545362, 2.943932, -0.4766169],
-        },
-    ];
-    /// The inverse map of a unit.
-    const INVERSE: tables::PolynomialInverse<[f32; 10], 1> = tables::PolynomialInverse {
-        forms: [
-            [0.01704014, -0.6866573, -0.041779503],
-            [0.01704014, 0.5040942, 0.037464034],
-        ],
-        upper: [
-            0.010142898,
-            0.0630319,
-            0.31740645,
-            -0.052719638,
-            -0.016445901,
-            0.38433596,
-            -0.084883966,
-            0.16267537,
-            0.014996112,
-            0.10150873,
-        ],
-        lower: [
-            -0.0042274417,
-            -0.07920923,
-            0.159384,
-            0.050170437,
-            -0.08425413,
-            0.051548325,
-            0.31566513,
-            -0.3211559,
-            0.91936976,
-            -0.039632052,
-        ],
-    };
-    /// How thrust and torque follow the battery's voltage, V.
-    const VOLTAGE: ::core::option::Option<tables::Law<'static>> = ::core::option::Option::None;
-    /// How they follow the air's density, kg/m3.
-    const AIR: ::core::option::Option<tables::Law<'static>> = ::core::option::Option::None;
     type Kinds = tables::Unlike<
         'static,
         tables::Cubic,
         tables::PolynomialInverse<[f32; 10], 1>,
+        false,
     >;
-    /// What each kind of unit gives, and which unit is which, in place of a closed form of allocation.
-    const CLOSED_FORM: Kinds = tables::Unlike {
-        kinds: &[
-            tables::Kind {
+    /// What the units give: forward maps, rotors alone, inverse maps.
+    const KINDS: Kinds = tables::Unlike {
+        pairs: &[
+            tables::PairKind {
+                pair: tables::Pair {
+                    thrust: tables::Cubic([
+                        -21.87007,
+                        -11.842,
+                        37.73425,
+                        -49.93869,
+                        60.47546,
+                        -41.77418,
+                        96.15143,
+                        2.633585,
+                        -8.530369,
+                    ]),
+                    torque: tables::Cubic([
+                        1.229847,
+                        -0.2643563,
+                        0.6215635,
+                        -1.545362,
+                        -2.649546,
+                        -0.3664053,
+                        2.943932,
+                        0.3015207,
+                        -0.4766169,
+                    ]),
+                },
+                alone: [
+                    tables::RotorAlone {
+                        thrust: [0.0, -21.87007, 60.47546, 2.633585],
+                        torque: [0.0, 1.229847, -2.649546, 0.3015207],
+                    },
+                    tables::RotorAlone {
+                        thrust: [0.0, -49.93869, 96.15143, -8.530369],
+                        torque: [0.0, -1.545362, 2.943932, -0.4766169],
+                    },
+                ],
+                inverse: tables::PolynomialInverse {
+                    forms: [
+                        [0.01704014, -0.6866573, -0.041779503],
+                        [0.01704014, 0.5040942, 0.037464034],
+                    ],
+                    upper: [
+                        0.010142898,
+                        0.0630319,
+                        0.31740645,
+                        -0.052719638,
+                        -0.016445901,
+                        0.38433596,
+                        -0.084883966,
+                        0.16267537,
+                        0.014996112,
+                        0.10150873,
+                    ],
+                    lower: [
+                        -0.0042274417,
+                        -0.07920923,
+                        0.159384,
+                        0.050170437,
+                        -0.08425413,
+                        0.051548325,
+                        0.31566513,
+                        -0.3211559,
+                        0.91936976,
+                        -0.039632052,
+                    ],
+                },
+                mean_square_slopes: [3038.3923, 4.218725],
+            },
+            tables::PairKind {
                 pair: tables::Pair {
                     thrust: tables::Cubic([
                         -12.69452,
@@ -263,12 +262,12 @@ pub mod x8_22_16in {
                         -0.03942483,
                     ]),
                 },
-                singles: [
-                    tables::SingleRotor {
+                alone: [
+                    tables::RotorAlone {
                         thrust: [0.0, -12.69452, 34.83511, 3.389777],
                         torque: [0.0, 0.4151488, -0.9625349, -0.007171285],
                     },
-                    tables::SingleRotor {
+                    tables::RotorAlone {
                         thrust: [0.0, -30.29086, 59.79173, -4.358592],
                         torque: [0.0, -0.6109266, 1.149242, -0.03942483],
                     },
@@ -306,20 +305,19 @@ pub mod x8_22_16in {
                 mean_square_slopes: [1383.8768, 0.94473034],
             },
         ],
-        of: &[255, 0, 0, 255],
+        single_rotors: &[],
     };
+    /// How thrust and torque follow the battery's voltage, V.
+    const VOLTAGE: ::core::option::Option<tables::Law<'static>> = ::core::option::Option::None;
+    /// How they follow the air's density, kg/m3.
+    const AIR: ::core::option::Option<tables::Law<'static>> = ::core::option::Option::None;
+    /// The closed form of allocation, where there is one.
+    const CLOSED_FORM: tables::NoClosedForm = tables::NoClosedForm;
     /// All tables; see `mixer_rt::tables` for their meaning and units.
     #[doc(hidden)]
-    pub static TABLES: tables::Tables<
-        'static,
-        tables::Cubic,
-        tables::PolynomialInverse<[f32; 10], 1>,
-        Kinds,
-    > = tables::Tables {
+    pub static TABLES: tables::Tables<'static, Kinds, tables::NoClosedForm> = tables::Tables {
         units: &UNIT_TABLES,
-        pair: PAIR,
-        singles: ROTORS_ALONE,
-        inverse: INVERSE,
+        kinds: KINDS,
         throttle: tables::ThrottleRange {
             min: 0.2275,
             max: 0.95,
@@ -327,7 +325,6 @@ pub mod x8_22_16in {
         voltage: VOLTAGE,
         air: AIR,
         row_scale: [0.04742669, 0.04742669, 1.2156715, 0.02012144],
-        mean_square_slopes: [3038.3923, 4.218725],
         level_n: [22.410551, 157.66672],
         is_vertical: true,
         priorities: tables::Priorities {

@@ -9,14 +9,14 @@
 /// * unit 2 at (0.27, -0.32, 0.0) m, single rotor cw: channel 3, rotor "front"
 ///
 /// Inverse map: polynomial of degree 3 in root coordinates, one Newton step.
-/// Proven: each unit's thrust and torque are within 0.00476 N and 9.39e-5 N m of what is asked, at every
+/// Proven: each unit's thrust and torque are within 0.00481 N and 9.46e-5 N m of what is asked, at every
 /// voltage and density and everywhere in the attainable set, rounding in f32 included (405 cells).
 /// Largest residual observed over 5251 efforts at the reference voltage: 0.00323 N, 6.37e-5 N m.
 #[allow(dead_code, unreachable_pub)]
 pub mod y4 {
     use ::mixer_rt::{self as rt, tables};
     const _: () = ::core::assert!(
-        tables::FORMAT == 1u32,
+        tables::FORMAT == 2u32,
         "generated for another version of mixer-rt: use mixer-compiler or mixer-macros of its version, and generate the file anew"
     );
     /// Number of units, pairs and single rotors.
@@ -102,7 +102,6 @@ pub mod y4 {
             CHANNELS,
             _,
             _,
-            _,
         >(&TABLES, setpoint, conditions.into(), rt::Health::GOOD)
     }
     /// [`mix`] with the rotors out that `health` names by channel.
@@ -120,7 +119,6 @@ pub mod y4 {
             CHANNELS,
             _,
             _,
-            _,
         >(&TABLES, setpoint, conditions.into(), health)
     }
     /// The units: rows of M+, columns of M, output channels.
@@ -128,90 +126,110 @@ pub mod y4 {
         tables::Unit {
             allocation: [
                 [-1.5625, 0.9259259, 0.0, 0.25],
-                [0.030866126, -0.018291038, 0.0, -0.00493858],
+                [-0.030866126, 0.018291038, 0.0, 0.00493858],
             ],
-            effectiveness: [[-0.32, 0.27, 0.0, 1.0], [0.0, 0.0, -1.0, 0.0]],
+            effectiveness: [[-0.32, 0.27, 0.0, 1.0], [0.0, 0.0, 1.0, 0.0]],
             channels: [0, 255],
+            kind: 1,
         },
         tables::Unit {
             allocation: [[0.0, -1.8518518, 0.0, 0.5], [0.06173225, 0.0, 1.0, 0.0]],
             effectiveness: [[0.0, -0.27, 0.0, 1.0], [0.0, 0.0, 1.0, 0.0]],
             channels: [1, 2],
+            kind: 0,
         },
         tables::Unit {
             allocation: [
                 [1.5625, 0.9259259, 0.0, 0.25],
-                [-0.030866126, -0.018291038, 0.0, -0.00493858],
+                [0.030866126, 0.018291038, 0.0, 0.00493858],
             ],
-            effectiveness: [[0.32, 0.27, 0.0, 1.0], [0.0, 0.0, 1.0, 0.0]],
+            effectiveness: [[0.32, 0.27, 0.0, 1.0], [0.0, 0.0, -1.0, 0.0]],
             channels: [3, 255],
+            kind: 1,
         },
     ];
-    /// The forward map of a unit: thrust and torque as polynomials of both throttles.
-    const PAIR: tables::Pair<tables::Cubic> = tables::Pair {
-        thrust: tables::Cubic([
-            -6.217785,
-            -10.65932,
-            15.51116,
-            -17.18383,
-            32.11498,
-            -13.05702,
-            45.86346,
-            1.353765,
-            -1.864585,
-        ]),
-        torque: tables::Cubic([
-            0.2397424,
-            -0.280695,
-            0.3782198,
-            -0.3983137,
-            -0.7226483,
-            -0.126547,
-            0.942299,
-            -0.04319061,
-            -0.04850475,
-        ]),
-    };
-    /// Thrust and torque of the upper and of the lower rotor alone.
-    const ROTORS_ALONE: [tables::SingleRotor; 2] = [
-        tables::SingleRotor {
-            thrust: [0.0, -7.684862, 33.4751, 1.786702],
-            torque: [0.0, 0.06253742, -0.5109395, -0.0947581],
-        },
-        tables::SingleRotor {
-            thrust: [0.0, -17.18383, 45.86346, -1.864585],
-            torque: [0.0, -0.3983137, 0.942299, -0.04850475],
-        },
-    ];
-    /// The inverse map of a unit.
-    const INVERSE: tables::PolynomialInverse<[f32; 10], 1> = tables::PolynomialInverse {
-        forms: [
-            [0.023695454, -1.3844702, 0.18176053],
-            [0.023695454, 1.143237, 0.06639295],
+    type Kinds = tables::Unlike<
+        'static,
+        tables::Cubic,
+        tables::PolynomialInverse<[f32; 10], 1>,
+        true,
+    >;
+    /// What the units give: forward maps, rotors alone, inverse maps.
+    const KINDS: Kinds = tables::Unlike {
+        pairs: &[
+            tables::PairKind {
+                pair: tables::Pair {
+                    thrust: tables::Cubic([
+                        -6.217785,
+                        -10.65932,
+                        15.51116,
+                        -17.18383,
+                        32.11498,
+                        -13.05702,
+                        45.86346,
+                        1.353765,
+                        -1.864585,
+                    ]),
+                    torque: tables::Cubic([
+                        0.2397424,
+                        -0.280695,
+                        0.3782198,
+                        -0.3983137,
+                        -0.7226483,
+                        -0.126547,
+                        0.942299,
+                        -0.04319061,
+                        -0.04850475,
+                    ]),
+                },
+                alone: [
+                    tables::RotorAlone {
+                        thrust: [0.0, -7.684862, 33.4751, 1.786702],
+                        torque: [0.0, 0.06253742, -0.5109395, -0.0947581],
+                    },
+                    tables::RotorAlone {
+                        thrust: [0.0, -17.18383, 45.86346, -1.864585],
+                        torque: [0.0, -0.3983137, 0.942299, -0.04850475],
+                    },
+                ],
+                inverse: tables::PolynomialInverse {
+                    forms: [
+                        [0.023695454, -1.3844702, 0.18176053],
+                        [0.023695454, 1.143237, 0.06639295],
+                    ],
+                    upper: [
+                        0.5589624,
+                        0.15529767,
+                        -1.5697705,
+                        -0.03477494,
+                        -0.2984397,
+                        2.5156095,
+                        -0.05357482,
+                        0.16393074,
+                        0.15183282,
+                        -0.7727221,
+                    ],
+                    lower: [
+                        0.49836805,
+                        0.16585399,
+                        -1.2237617,
+                        0.39280498,
+                        -0.9963134,
+                        1.4672742,
+                        0.26742363,
+                        -0.7234673,
+                        1.7465883,
+                        -0.6712728,
+                    ],
+                },
+                mean_square_slopes: [1600.8937, 1.0418423],
+            },
         ],
-        upper: [
-            0.5589624,
-            0.15529767,
-            -1.5697705,
-            -0.03477494,
-            -0.2984397,
-            2.5156095,
-            -0.05357482,
-            0.16393074,
-            0.15183282,
-            -0.7727221,
-        ],
-        lower: [
-            0.49836805,
-            0.16585399,
-            -1.2237617,
-            0.39280498,
-            -0.9963134,
-            1.4672742,
-            0.26742363,
-            -0.7234673,
-            1.7465883,
-            -0.6712728,
+        single_rotors: &[
+            tables::RotorAlone {
+                thrust: [0.0, -7.684862, 33.4751, 1.786702],
+                torque: [0.0, -0.06253742, 0.5109395, 0.0947581],
+            },
         ],
     };
     /// How thrust and torque follow the battery's voltage, V.
@@ -240,43 +258,13 @@ pub mod y4 {
     });
     /// How they follow the air's density, kg/m3.
     const AIR: ::core::option::Option<tables::Law<'static>> = ::core::option::Option::None;
-    type Kinds = tables::WithSingleRotors<
-        'static,
-        tables::Cubic,
-        tables::PolynomialInverse<[f32; 10], 1>,
-    >;
-    /// What each kind of unit gives, and which unit is which, in place of a closed form of allocation.
-    const CLOSED_FORM: Kinds = tables::WithSingleRotors {
-        unlike: tables::Unlike {
-            kinds: &[],
-            of: &[0, 255, 0],
-        },
-        rotors: &[
-            [
-                tables::SingleRotor {
-                    thrust: [0.0, -7.684862, 33.4751, 1.786702],
-                    torque: [0.0, 0.06253742, -0.5109395, -0.0947581],
-                },
-                tables::SingleRotor {
-                    thrust: [0.0, -7.684862, 33.4751, 1.786702],
-                    torque: [0.0, 0.06253742, -0.5109395, -0.0947581],
-                },
-            ],
-        ],
-        passes: 2,
-    };
+    /// The closed form of allocation, where there is one.
+    const CLOSED_FORM: tables::NoClosedForm = tables::NoClosedForm;
     /// All tables; see `mixer_rt::tables` for their meaning and units.
     #[doc(hidden)]
-    pub static TABLES: tables::Tables<
-        'static,
-        tables::Cubic,
-        tables::PolynomialInverse<[f32; 10], 1>,
-        Kinds,
-    > = tables::Tables {
+    pub static TABLES: tables::Tables<'static, Kinds, tables::NoClosedForm> = tables::Tables {
         units: &UNIT_TABLES,
-        pair: PAIR,
-        singles: ROTORS_ALONE,
-        inverse: INVERSE,
+        kinds: KINDS,
         throttle: tables::ThrottleRange {
             min: 0.20500001,
             max: 0.95,
@@ -284,8 +272,7 @@ pub mod y4 {
         voltage: VOLTAGE,
         air: AIR,
         row_scale: [0.18513153, 0.11967781, 1.9763181, 0.03231301],
-        mean_square_slopes: [1600.8937, 1.0418423],
-        level_n: [6.8124647, 81.45526],
+        level_n: [6.8129697, 81.45526],
         is_vertical: true,
         priorities: tables::Priorities {
             airmode: tables::Airmode::Disabled,
@@ -295,7 +282,7 @@ pub mod y4 {
         closed_form: CLOSED_FORM,
         tolerance: tables::Tolerance {
             efforts: [0.0037430986, 0.000073708165],
-            wrench: [0.0000843749, 0.0014122382, 0.00010172734, 0.005230512],
+            wrench: [0.0031555074, 0.004003506, 0.00029065544, 0.014827801],
         },
     };
 }

@@ -105,7 +105,7 @@ pub fn measure() -> Result<Vec<Row>, String> {
 }
 
 fn compare(name: &str, compiled: &Compiled) -> [Row; 4] {
-    let pair = &compiled.pair;
+    let pair = &compiled.maps[0];
     let matrix = &compiled.effectiveness.matrix;
     let n = compiled.airframe.units.len();
     let [size_f, size_q] = pair.scale();
@@ -148,7 +148,11 @@ fn compare(name: &str, compiled: &Compiled) -> [Row; 4] {
                 let efforts = unit
                     .allocation
                     .map(|row| row.iter().zip(setpoint.to_array()).map(|(a, b)| a * b).sum());
-                compiled.tables.throttles(efforts).map(f64::from)
+                compiled
+                    .tables
+                    .throttles(0, efforts)
+                    .unwrap_or_default()
+                    .map(f64::from)
             })
             .collect();
         least_norm.count(request, wrench(&throttles), authority);

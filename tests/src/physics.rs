@@ -2,7 +2,7 @@
 //! against.
 
 use mixer_compiler::Compiled;
-use mixer_compiler::airframe::{Airframe, Correction, RotorAlone};
+use mixer_compiler::airframe::{Airframe, Correction, Kind, RotorAlone, Spin};
 use mixer_compiler::model::PairMap;
 use mixer_rt::Health;
 use nalgebra::{Matrix4xX, MatrixXx4, Vector3};
@@ -20,11 +20,12 @@ fn effectiveness(airframe: &Airframe) -> Matrix4xX<f64> {
     let mut matrix = Matrix4xX::zeros(2 * n);
     for (i, unit) in airframe.units.iter().enumerate() {
         let [position, axis] = [unit.position_m, unit.axis].map(Vector3::from);
-        let spin = if unit.upper_spin == airframe.pair_of(unit).upper_spin {
-            1.0
-        } else {
-            -1.0
+        // The torque of a single rotor counts positive: it turns the frame clockwise where it spins the other way.
+        let positive = match airframe.kind_of(unit) {
+            Kind::Pair(pair) => pair.upper_spin,
+            _ => Spin::Ccw,
         };
+        let spin = if unit.upper_spin == positive { 1.0 } else { -1.0 };
         matrix.set_column(i, &position.cross(&axis).push(-axis.z));
         matrix.set_column(n + i, &(-spin * axis).push(0.0));
     }
@@ -33,9 +34,9 @@ fn effectiveness(airframe: &Airframe) -> Matrix4xX<f64> {
 
 /// The forward physics of one frame.
 pub struct Physics {
-    /// Thrust and torque of one unit, of the first pair where units differ.
-    pub pair: PairMap,
-    /// Those of each unit.
+    /// Least and largest throttle.
+    pub throttle: [f64; 2],
+    /// Thrust and torque of each unit.
     pub pairs: Vec<PairMap>,
     /// M, 4 x 2n: all thrusts, then all torques.
     pub matrix: Matrix4xX<f64>,
@@ -53,11 +54,11 @@ impl Physics {
     /// The physics of a compiled frame.
     pub fn new(compiled: &Compiled) -> Self {
         let airframe = &compiled.airframe;
-        let pairs = || airframe.units.iter().map(|unit| airframe.pair_of(unit));
+        let kinds = || airframe.units.iter().map(|unit| airframe.kind_of(unit));
         Physics {
-            pair: PairMap::new(&airframe.pair, &airframe.throttle),
-            pairs: pairs()
-                .map(|pair| PairMap::new(pair, &airframe.throttle))
+            throttle: airframe.throttle.range(),
+            pairs: kinds()
+                .map(|kind| PairMap::of_kind(kind, &airframe.throttle))
                 .collect(),
             matrix: effectiveness(airframe),
             pseudo_inverse: compiled.effectiveness.pseudo_inverse.clone(),
@@ -67,8 +68,11 @@ impl Physics {
                 .map(|unit| [unit.upper_channel, unit.lower_channel.unwrap_or(NONE)])
                 .collect(),
             corrections: [airframe.voltage.clone(), airframe.air.clone()],
-            alone: pairs()
-                .map(|pair| [pair.lower_out.clone(), pair.upper_out.clone()])
+            alone: kinds()
+                .map(|kind| match kind {
+                    Kind::Pair(pair) => [pair.lower_out.clone(), pair.upper_out.clone()],
+                    Kind::SingleRotor(rotor) => [Some(rotor.alone.clone()), None],
+                })
                 .collect(),
         }
     }
@@ -165,7 +169,7 @@ impl Physics {
 
     /// What a unit gives: a rotor below idle is out.
     pub(crate) fn given(&self, unit: usize, throttles: [f64; 2]) -> [f64; 2] {
-        let idle = self.pair.range()[0];
+        let idle = self.throttle[0];
         let is_out = throttles.map(|throttle| throttle < 0.999 * idle);
         match (is_out, &self.alone[unit]) {
             ([false, true], [Some(alone), _]) => alone.efforts(throttles[0]),
@@ -263,14 +267,14 @@ impl Physics {
             let Some(curve) = self.curve(i) else {
                 return self.attains(i, wanted);
             };
-            let [least, most] = self.pair.range().map(|throttle| curve.efforts(throttle)[0]);
+            let [least, most] = self.throttle.map(|throttle| curve.efforts(throttle)[0]);
             (least..=most).contains(&wanted[0])
         })
     }
 
     /// The throttle of a single rotor's thrust, N, within the range.
     fn throttle_of(&self, curve: &RotorAlone, thrust_n: f64) -> f64 {
-        let [mut low, mut high] = self.pair.range();
+        let [mut low, mut high] = self.throttle;
         for _ in 0..60 {
             let middle = 0.5 * (low + high);
             if curve.efforts(middle)[0] < thrust_n {
@@ -284,7 +288,7 @@ impl Physics {
 
     /// The throttle at `share` of the allowed range, rounded into it.
     pub fn throttle(&self, share: f64) -> f32 {
-        let [low, high] = self.pair.range();
+        let [low, high] = self.throttle;
         let throttle = (low + share * (high - low)) as f32;
         if f64::from(throttle) < low {
             throttle.next_up()

@@ -53,7 +53,7 @@ pub struct Inverse {
 
 impl Inverse {
     /// Largest errors of thrust, N, and torque, N m.
-    pub(crate) fn tolerances(&self) -> [f64; 2] {
+    pub fn tolerances(&self) -> [f64; 2] {
         [self.thrust_tolerance_n, self.torque_tolerance_nm]
     }
 }

@@ -3,6 +3,7 @@
 
 use super::limits;
 use super::throttle::Throttle;
+use crate::bounds::bisected;
 use crate::diagnostic::{Code, number};
 use crate::spec::Fields;
 use crate::spec::keys::{Key, ValueKind, keys};
@@ -21,15 +22,14 @@ keys! { UPPER_OUT = "[pair.upper_out]":
         "Its torque, N m, signed as that of the pair.".required();
 }
 
-/// `[pair.lower_out]` or `[pair.upper_out]`: a1 x + a2 x2 + a3 x3 in the throttle x of the rotor
-/// that turns.
+/// `[pair.lower_out]`, `[pair.upper_out]` or `[[rotor]]`: a1 x + a2 x2 + a3 x3 in the throttle x of the rotor that turns.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct RotorAlone {
     /// a1, a2, a3 of the thrust, N; it grows with the throttle over the throttle range.
     pub thrust_n: [f64; 3],
-    /// a1, a2, a3 of the torque, N m, signed as on the bench: at full throttle below 0 for the
-    /// upper rotor, above for the lower one.
+    /// a1, a2, a3 of the torque, N m: at full throttle below 0 for the upper rotor of a pair, above for its lower one and
+    /// for a single rotor.
     pub torque_nm: [f64; 3],
 }
 
@@ -37,6 +37,14 @@ impl RotorAlone {
     /// The efforts `[f, Q]` at the rotor's throttle, N and N m at the reference voltage.
     pub fn efforts(&self, throttle: f64) -> [f64; 2] {
         [self.thrust_n, self.torque_nm].map(|coefficients| value(coefficients, throttle))
+    }
+
+    /// Torque over thrust at half of the largest thrust, m: what M+ takes for its share.
+    pub(crate) fn torque_per_thrust(&self, throttle: &Throttle) -> f64 {
+        let [most, _] = self.efforts(throttle.max);
+        let is_more = |x: f64| self.efforts(x)[0] > 0.5 * most;
+        let [f, q] = self.efforts(bisected([throttle.min, throttle.max], is_more));
+        q / f
     }
 }
 
@@ -108,13 +116,6 @@ pub(super) fn read(
 
 fn value([a1, a2, a3]: [f64; 3], x: f64) -> f64 {
     ((a3 * x + a2) * x + a1) * x
-}
-
-impl RotorAlone {
-    /// The slopes of thrust and torque over the throttle, N and N m.
-    pub(crate) fn slopes(&self, x: f64) -> [f64; 2] {
-        [self.thrust_n, self.torque_nm].map(|[a1, a2, a3]| (3.0 * a3 * x + 2.0 * a2) * x + a1)
-    }
 }
 
 /// The least slope over the throttle range, N, and the throttle where it is: the slope is a

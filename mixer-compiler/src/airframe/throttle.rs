@@ -28,6 +28,13 @@ pub struct Throttle {
     pub max: f64,
 }
 
+impl Throttle {
+    /// Both ends.
+    pub fn range(&self) -> [f64; 2] {
+        [self.min, self.max]
+    }
+}
+
 pub(super) fn read(table: &mut Fields<'_, '_>) -> Option<Throttle> {
     let [min, max] = [&MIN, &MAX].map(|key| {
         let field = table.read::<f64>(key)?;

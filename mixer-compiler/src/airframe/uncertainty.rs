@@ -1,11 +1,11 @@
-//! `[pair.uncertainty]`: how far the model of the pair may be from the pair itself.
+//! `[pair.uncertainty]`, `[rotor.uncertainty]`: how far the model may be from what it is of.
 
 use crate::spec::Fields;
 use crate::spec::keys::{Range, ValueKind, keys};
 
 const PERCENT: ValueKind = ValueKind::Number(Range::UpTo(100.0));
 const LABEL: &str = "expected per cent of full scale";
-const HELP: &str = "one standard deviation; leave `[pair.uncertainty]` out where it is not known";
+const HELP: &str = "one standard deviation; leave the table out where it is not known";
 
 keys! { TABLE = "[pair.uncertainty]":
     THRUST_PERCENT "thrust_percent" = "1.5", PERCENT,
@@ -13,10 +13,10 @@ keys! { TABLE = "[pair.uncertainty]":
     TORQUE_PERCENT "torque_percent" = "3.7", PERCENT,
         "Standard deviation of the torque, % of the largest torque.".required().refusing(LABEL, HELP);
     SOURCE "source" = "\"prediction\"", ValueKind::Word(&["bench", "prediction"]),
-        "Whether the pair was measured or predicted from one rotor; bench without it.";
+        "Whether it was measured, or a pair was predicted from one rotor; bench without it.";
 }
 
-/// `[pair.uncertainty]`: one standard deviation of the model's error.
+/// `[pair.uncertainty]` or `[rotor.uncertainty]`: one standard deviation of the model's error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Uncertainty {

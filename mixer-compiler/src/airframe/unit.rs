@@ -49,8 +49,8 @@ pub struct Unit {
     pub upper_channel: usize,
     /// Output that drives the lower rotor; `None` of a single rotor.
     pub lower_channel: Option<usize>,
-    /// Where its pair stands in [`super::Airframe::pairs`]; single rotors count on past the pairs.
-    pub pair: usize,
+    /// Where it stands in [`super::Airframe::pairs`], or past these in `single_rotors`.
+    pub kind: usize,
 }
 
 /// A rotor of a unit.
@@ -114,15 +114,6 @@ impl Unit {
             let throttle = channel.and_then(|channel| outputs.get(channel));
             throttle.map_or(0.0, |throttle| (*throttle).into())
         })
-    }
-
-    /// Sign s of the unit's torque in yaw: +1 where its upper rotor spins as on the bench, else -1.
-    pub(super) fn spin_sign(&self, pair_upper_spin: Spin) -> f64 {
-        if self.upper_spin == pair_upper_spin {
-            1.0
-        } else {
-            -1.0
-        }
     }
 }
 
@@ -237,8 +228,8 @@ pub(super) fn check(
     }
     check_places(units, places, faults);
     check_channels(units, places, faults);
-    let pairs = check_pairs(units, names, places, faults);
-    let complete = |(unit, pair): (&Written, Option<usize>)| {
+    let kinds = check_kinds(units, names, places, faults);
+    let complete = |(unit, kind): (&Written, Option<usize>)| {
         let (upper_channel, lower_channel) = unit.channels?;
         Some(Unit {
             position_m: unit.position_m?,
@@ -246,22 +237,22 @@ pub(super) fn check(
             upper_spin: unit.upper_spin?,
             upper_channel,
             lower_channel,
-            pair: pair?,
+            kind: kind?,
         })
     };
-    units.iter().zip(pairs).map(complete).collect()
+    units.iter().zip(kinds).map(complete).collect()
 }
 
 /// Every unit has one of the file's pairs or single rotors, by name where there are several, and each of these a unit.
-fn check_pairs(
+fn check_kinds(
     units: &[Written],
-    [pairs, rotors]: [&[String]; 2],
+    names: [&[String]; 2],
     places: &Places,
     faults: &mut Vec<Diagnostic>,
 ) -> Vec<Option<usize>> {
-    // Rotors at fault are told of.
+    // Tables at fault are told of.
     let rotors_are_whole = !faults.iter().any(|fault| fault.key.starts_with("rotor"));
-    let mut fault = |code, key: String, message: String, label: &str, help: String| {
+    let mut tell = |code, key: String, message: String, label: &str, help: String| {
         let fault = Diagnostic::new(code, key.as_str(), place_in(places, &key), message);
         faults.push(fault.label(label).help(help));
     };
@@ -269,58 +260,59 @@ fn check_pairs(
         let quoted: Vec<String> = names.iter().map(|name| format!("\"{name}\"")).collect();
         quoted.join(", ")
     };
+    let [pairs, rotors] = names;
     // One pair alone needs no name.
     let is_one = pairs.len() == 1;
     let is_clear =
         (0..pairs.len()).all(|k| is_one || !pairs[k].is_empty() && !pairs[..k].contains(&pairs[k]));
     let is_named = |unit: &Written| unit.pair.is_some() || unit.rotor.is_some();
-    let is_complete = is_clear && units.iter().all(|unit| is_one || is_named(unit));
-    for (table, names) in [("pair", pairs), ("rotor", rotors)] {
-        let is_lone = is_one && table == "pair";
-        let has = |unit: &Written, name: &String| match table {
-            "pair" => unit.rotor.is_none() && (is_one || unit.pair.as_ref() == Some(name)),
-            _ => unit.rotor.as_ref() == Some(name),
+    let is_complete = is_clear && !units.is_empty() && units.iter().all(|unit| is_one || is_named(unit));
+    for (word, names, is_lone) in [("pair", pairs, is_one), ("rotor", rotors, false)] {
+        let of = |unit: &Written| {
+            if word == "pair" {
+                unit.pair.clone()
+            } else {
+                unit.rotor.clone()
+            }
+        };
+        let has = |unit: &Written, name: &String| match is_lone {
+            true => unit.rotor.is_none(),
+            false => of(unit).as_ref() == Some(name),
         };
         for (k, name) in names.iter().enumerate() {
-            let named = format!("{table}[{k}].name");
+            let key = format!("{word}[{k}]");
             if name.is_empty() && !is_lone {
-                let message = format!("`{table}[{k}]` has no name");
-                let help = "add name = \"..\", by which units have it".to_owned();
-                fault(
-                    Code::MissingKey,
-                    format!("{table}[{k}]"),
-                    message,
-                    "one of several",
-                    help,
+                let (message, help) = (
+                    format!("`{key}` has no name"),
+                    "add name = \"..\", by which units have it",
                 );
+                tell(Code::MissingKey, key, message, "one of several", help.to_owned());
             } else if names[..k].contains(name) {
-                let message = format!("two `[[{table}]]` are called \"{name}\"");
-                fault(
+                let message = format!("two `[[{word}]]` are called \"{name}\"");
+                tell(
                     Code::Conflict,
-                    named,
+                    key + ".name",
                     message,
                     "the second one",
                     "rename one of them".to_owned(),
                 );
-            } else if is_complete && !units.is_empty() && !units.iter().any(|unit| has(unit, name)) {
+            } else if is_complete && !units.iter().any(|unit| has(unit, name)) {
+                let in_layout = if word == "pair" {
+                    " or in `pairs` of `[layout]`"
+                } else {
+                    ""
+                };
                 let (message, help) = match is_lone {
                     true => (
                         "no unit has the pair".to_owned(),
                         "remove it, or `rotor` from a unit that is a pair".to_owned(),
                     ),
-                    false => {
-                        let of_layout = if table == "pair" {
-                            " or in `pairs` of `[layout]`"
-                        } else {
-                            ""
-                        };
-                        (
-                            format!("no unit has the {table} \"{name}\""),
-                            format!("write {table} = \"{name}\" in a `[[unit]]`{of_layout}, or remove it"),
-                        )
-                    }
+                    false => (
+                        format!("no unit has the {word} \"{name}\""),
+                        format!("write {word} = \"{name}\" in a `[[unit]]`{in_layout}, or remove it"),
+                    ),
                 };
-                fault(Code::Conflict, named, message, "not used", help);
+                tell(Code::Conflict, key + ".name", message, "not used", help);
             }
         }
     }
@@ -331,67 +323,60 @@ fn check_pairs(
             "add pairs = [..] with one of {} for each unit, clockwise from the first",
             listed(pairs)
         );
-        fault(Code::MissingKey, "layout".to_owned(), message, "no `pairs`", help);
+        tell(Code::MissingKey, "layout".to_owned(), message, "no `pairs`", help);
         return vec![None; units.len()];
     }
+    let in_layout = places.contains_key("layout.pairs");
     let find = |(k, unit): (usize, &Written)| {
-        let found = match (&unit.pair, &unit.rotor) {
-            (Some(_), Some(_)) => None,
-            (None, Some(_)) if !rotors_are_whole => return None,
-            (None, Some(name)) => rotors
-                .iter()
-                .position(|known| known == name)
-                .map(|place| pairs.len().max(1) + place),
-            // Pairs at fault are told of.
-            _ if pairs.is_empty() || !is_clear => return None,
-            (None, None) => is_one.then_some(0),
-            (Some(name), None) => pairs.iter().position(|known| known == name && !name.is_empty()),
-        };
-        if found.is_some() {
-            return found;
-        }
-        let in_layout = places.contains_key("layout.pairs");
-        let table = if unit.rotor.is_some() { "rotor" } else { "pair" };
-        let key = match in_layout {
+        let key = |word: &str| match in_layout {
             true => format!("layout.pairs[{k}]"),
-            false => format!("unit[{k}].{table}"),
+            false => format!("unit[{k}].{word}"),
         };
-        let (code, message, label, help) = match (&unit.pair, &unit.rotor) {
-            (Some(_), Some(_)) => (
-                Code::Conflict,
-                format!("`unit[{k}]` has a pair and a single rotor"),
-                "one of them",
-                "remove `pair` or `rotor`".to_owned(),
+        let (word, name, names, first) = match (&unit.pair, &unit.rotor) {
+            (Some(_), Some(_)) => {
+                let message = format!("`unit[{k}]` has a pair and a single rotor");
+                let help = "remove `pair` or `rotor`".to_owned();
+                tell(Code::Conflict, key("rotor"), message, "one of them", help);
+                return None;
+            }
+            (None, Some(name)) if rotors_are_whole => ("rotor", name, rotors, pairs.len()),
+            (None, Some(_)) => return None,
+            _ if pairs.is_empty() || !is_clear => return None,
+            (None, None) if is_one => return Some(0),
+            (None, None) => {
+                let message = format!("`unit[{k}]` has no pair, and the file has several");
+                let help = format!("write pair = one of {}", listed(pairs));
+                tell(Code::MissingKey, key("pair"), message, "which one?", help);
+                return None;
+            }
+            (Some(name), None) => ("pair", name, pairs, 0),
+        };
+        let found = names.iter().position(|known| known == name && !name.is_empty());
+        if let Some(found) = found {
+            return Some(first + found);
+        }
+        let whose = format!("`unit[{k}]` has the {word} \"{name}\"");
+        let (message, help) = match names {
+            [] => (
+                format!("{whose}, of which the file has none"),
+                format!("add a table `[[{word}]]` with name = \"{name}\""),
             ),
-            (None, None) => (
-                Code::MissingKey,
-                format!("`unit[{k}]` has no pair, and the file has several"),
-                "which one?",
-                format!("write pair = one of {}", listed(pairs)),
-            ),
-            (Some(name), None) if is_one && pairs[0].is_empty() => (
-                Code::UnknownWord,
-                format!("`unit[{k}]` has the pair \"{name}\", and the file's pair has no name"),
-                "no such pair",
+            [lone] if lone.is_empty() => (
+                format!("{whose}, and the file's pair has no name"),
                 format!("remove it, or write name = \"{name}\" under `[pair]`"),
             ),
-            (Some(name), None) => (
-                Code::UnknownWord,
-                format!("`unit[{k}]` has the pair \"{name}\", of which the file has none"),
-                "no such pair",
-                format!("write one of {}", listed(pairs)),
-            ),
-            (None, Some(name)) => (
-                Code::UnknownWord,
-                format!("`unit[{k}]` has the rotor \"{name}\", of which the file has none"),
-                "no such rotor",
-                match rotors {
-                    [] => format!("add a table `[[rotor]]` with name = \"{name}\""),
-                    _ => format!("write one of {}", listed(rotors)),
-                },
+            names => (
+                format!("{whose}, of which the file has none"),
+                format!("write one of {}", listed(names)),
             ),
         };
-        fault(code, key, message, label, help);
+        tell(
+            Code::UnknownWord,
+            key(word),
+            message,
+            &format!("no such {word}"),
+            help,
+        );
         None
     };
     units.iter().enumerate().map(find).collect()

@@ -76,9 +76,10 @@ impl Layout {
 pub(crate) fn table(
     airframe: &Airframe,
     effectiveness: &Effectiveness,
-    pair: &PairMap,
+    maps: &[PairMap],
 ) -> Result<(ClosedFormTable, f64), &'static str> {
     let Layout { columns, free } = Layout::new(airframe, effectiveness)?;
+    let pair = &maps[0];
     let [low, high] = pair.range();
     let ends = [pair.efforts([low, low]), pair.efforts([high, high])];
     // f32 rounding, inwards.

@@ -109,17 +109,10 @@ pub(crate) fn level(airframe: &Airframe, tables: &MixerTables) -> [f32; 2] {
 /// The ends of the longest run of thrusts that are delivered, N.
 fn longest_run(tables: &MixerTables, is_delivered: &dyn Fn(f32) -> bool) -> Option<[f32; 2]> {
     let full = |unit| tables.efforts_of(unit, [tables.throttle.max; 2])[0];
-    let units = || {
-        tables
-            .units
-            .iter()
-            .map(|unit| unit.effectiveness[0][3])
-            .enumerate()
-    };
-    let most = match tables.kind_of.is_empty() {
-        true => units().map(|(_, lift)| lift).sum::<f32>() * full(0),
-        false => units().map(|(unit, lift)| lift * full(unit)).sum(),
-    };
+    let units = tables.units.iter().enumerate();
+    let most: f32 = units
+        .map(|(index, unit)| unit.effectiveness[0][3] * full(index))
+        .sum();
     let at = |step: usize| most * step as f32 / STEPS as f32;
     let mut best = 0..0;
     let mut first = 0;

@@ -12,7 +12,7 @@
 //!
 //! A single rotor is one effort, not two. With kappa the ratio of its torque and thrust at half of its largest thrust its
 //! column is M_f + kappa M_Q, and its rows of M+ are p and kappa p: what its torque differs from kappa f by, the mixer
-//! feeds back (`feedback.rs`).
+//! makes up for along the rotor's curve (`allocate/rotors_alone.rs` of `mixer-rt`).
 //!
 //! An airframe may leave axes out: their rows are dropped before inversion and their columns of M+
 //! are zero.
@@ -21,8 +21,7 @@ use nalgebra::{DMatrix, Matrix4xX, MatrixXx4};
 
 use super::pair_map::scales;
 use super::pseudo_inverse::PseudoInverse;
-use crate::airframe::single_rotor::torque_per_thrust;
-use crate::airframe::{Airframe, Axis};
+use crate::airframe::{Airframe, Axis, Kind};
 use crate::diagnostic::{Code, Diagnostic};
 
 /// M and M+ with what is known about them.
@@ -122,10 +121,11 @@ impl Effectiveness {
 
 /// Torque over thrust of the units that are single rotors, m, at half of the largest thrust.
 fn kappas(airframe: &Airframe) -> Vec<Option<f64>> {
-    let units = airframe.units.iter();
-    let curves = units.map(|unit| airframe.curve_of(unit));
-    let kappa = |curve| torque_per_thrust(curve, &airframe.throttle);
-    curves.map(|curve| curve.map(kappa)).collect()
+    let kappa = |unit| match airframe.kind_of(unit) {
+        Kind::Pair(_) => None,
+        Kind::SingleRotor(rotor) => Some(rotor.alone.torque_per_thrust(&airframe.throttle)),
+    };
+    airframe.units.iter().map(kappa).collect()
 }
 
 /// M of the layout.

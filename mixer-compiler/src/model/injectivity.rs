@@ -12,7 +12,7 @@
 //! An invertible linear change of the efforts changes nothing about injectivity. All signs are
 //! proven by [`Bivariate`].
 
-use crate::airframe::{Airframe, Basis, Pair, value_of_terms};
+use crate::airframe::{Basis, Pair, View, value_of_terms};
 use crate::bounds::interval::Interval;
 use crate::diagnostic::{Code, Diagnostic, rounded};
 use crate::model::PairMap;
@@ -188,11 +188,11 @@ impl EnclosedPairMap {
 ///
 /// # Errors
 /// A fold, at `throttle.min` with the least idle that would do, or a torque of the wrong sign.
-pub(crate) fn prove(airframe: &Airframe) -> Result<(Injectivity, f64), Vec<Diagnostic>> {
-    let map = EnclosedPairMap::new(&airframe.pair);
+pub(crate) fn prove(view: &View<'_, &Pair>) -> Result<(Injectivity, f64), Vec<Diagnostic>> {
+    let map = EnclosedPairMap::new(view.of);
     let throttle = ThrottleBox {
-        low: airframe.throttle.min,
-        high: airframe.throttle.max,
+        low: view.throttle.min,
+        high: view.throttle.max,
     };
     let least_idle = map.least_idle(throttle.high);
     let fold = match map.prove_injective(throttle) {
@@ -218,16 +218,16 @@ pub(crate) fn prove(airframe: &Airframe) -> Result<(Injectivity, f64), Vec<Diagn
             };
             let message =
                 format!("the pair's map folds: det J falls to {} at (u, l) = ({u:.3}, {l:.3})", rounded(value));
-            airframe.diagnostic(Code::Fold, key, message, label, mend)
+            view.diagnostic(Code::Fold, key, message, label, mend)
         }
-        Fold::Reversed => airframe.diagnostic(
+        Fold::Reversed => view.diagnostic(
             Code::Fold,
             "pair.torque_nm",
             "det J is negative over the throttle box: this torque falls where the lower rotor speeds up",
             "signed for the other rotor",
-            reversed(airframe),
+            reversed(view),
         ),
-        Fold::NotGlobal => airframe.diagnostic(
+        Fold::NotGlobal => view.diagnostic(
             Code::NotInjective,
             "throttle.min",
             "det J is positive, but the map could not be proven injective: two throttle pairs may give one effort",
@@ -239,8 +239,8 @@ pub(crate) fn prove(airframe: &Airframe) -> Result<(Injectivity, f64), Vec<Diagn
 
 /// What to do about a det J below 0. The mean torque of the rotors in their true order is negative
 /// for a torque of the right sign.
-fn reversed(airframe: &Airframe) -> &'static str {
-    let map = PairMap::new(&airframe.pair, &airframe.throttle);
+fn reversed(view: &View<'_, &Pair>) -> &'static str {
+    let map = PairMap::new(view.of, &view.throttle);
     match Wake::of_torque(wake::mean_torque(|at| map.efforts(at)[1], map.range())) {
         Wake::Above => {
             "by its mean the torque has the other sign: it counts positive where the lower rotor outweighs the upper; negate every \

@@ -72,27 +72,6 @@ pub(crate) fn largest_factors(airframe: &Airframe) -> [f64; 2] {
     })
 }
 
-/// Least and largest k_Q / k_f under all conditions. Between the ends of a part both factors rise or both fall.
-pub(crate) fn torque_over_thrust(airframe: &Airframe) -> [f64; 2] {
-    const PARTS: u32 = 64;
-    let corrections = [&airframe.voltage, &airframe.air].into_iter().flatten();
-    corrections.fold([1.0; 2], |[least, most], correction| {
-        let [low, high] = correction.range;
-        let laws = [&correction.thrust, &correction.torque];
-        let inner = laws.into_iter().flat_map(points).map(|point| point[0]);
-        let parts = (0..=PARTS).map(|k| low + (high - low) * f64::from(k) / f64::from(PARTS));
-        let mut ends: Vec<f64> = inner.filter(|x| (low..=high).contains(x)).chain(parts).collect();
-        ends.sort_by(f64::total_cmp);
-        let (mut own_least, mut own_most) = (f64::INFINITY, 0.0f64);
-        for part in ends.windows(2) {
-            let [f, q] = laws.map(|law| [0, 1].map(|end| law.factor(part[end], correction.reference)));
-            own_least = own_least.min(q[0].min(q[1]) / f[0].max(f[1]));
-            own_most = own_most.max(q[0].max(q[1]) / f[0].min(f[1]));
-        }
-        [least * own_least, most * own_most]
-    })
-}
-
 /// The correction, tabulated and rounded.
 fn tabulate(correction: &Correction) -> LawTable {
     let [low, high] = correction.range.map(|x| x as f32);

@@ -1,7 +1,8 @@
 //! The forward map of one unit in f64, with its Jacobian: what inverses are fitted to and checked
 //! against.
 
-use crate::airframe::{Airframe, Basis, POWERS, Pair, Throttle};
+use crate::airframe::{Airframe, Basis, Kind, POWERS, Pair, RotorAlone, Throttle, Unit};
+use crate::bounds::bisected;
 
 /// Thrust and torque of one unit at the reference voltage (eq. (1)).
 #[derive(Clone, Debug)]
@@ -22,13 +23,57 @@ struct Slopes {
     by_l: [f64; 2],
 }
 
+/// The forward map of each unit.
+pub fn maps(airframe: &Airframe) -> Vec<PairMap> {
+    let kinds: Vec<PairMap> = airframe
+        .views()
+        .map(|view| PairMap::of_kind(view.of, &view.throttle))
+        .collect();
+    airframe
+        .units
+        .iter()
+        .map(|unit| kinds[unit.kind].clone())
+        .collect()
+}
+
+/// The mean map of the units that are pairs, of the single rotors where none is: what a mixer has that takes rotors for
+/// alike. `maps` are those of the units.
+pub fn mean(airframe: &Airframe, maps: &[PairMap]) -> PairMap {
+    let units = airframe.units.iter().zip(maps);
+    let is_meant = |unit: &Unit| airframe.pairs.is_empty() || unit.lower_channel.is_some();
+    let meant: Vec<(&Unit, &PairMap)> = units.filter(|(unit, _)| is_meant(unit)).collect();
+    let (first, count) = (meant[0], meant.len() as f64);
+    let mut mean = first.1.clone();
+    if meant.iter().any(|(unit, _)| unit.kind != first.0.kind) {
+        for (i, j, k) in (0..POWERS * POWERS * 2).map(|at| (at / (2 * POWERS), at / 2 % POWERS, at % 2)) {
+            let values = meant.iter().map(|(_, map)| map.coefficients[i][j][k]);
+            mean.coefficients[i][j][k] = values.sum::<f64>() / count;
+        }
+    }
+    mean
+}
+
+/// The throttle of all rotors alike at which units of these maps lift `thrust_n` N at the reference voltage; `None` where none
+/// of the range does.
+pub fn equal_throttle(airframe: &Airframe, maps: &[PairMap], thrust_n: f64) -> Option<f64> {
+    let lift = |throttle: f64| -> f64 {
+        let units = airframe.units.iter().zip(maps);
+        units
+            .map(|(unit, map)| -unit.axis[2] * map.efforts([throttle; 2])[0])
+            .sum()
+    };
+    let Throttle { min, max } = airframe.throttle;
+    let is_within = lift(min) < thrust_n && thrust_n < lift(max);
+    is_within.then(|| bisected([min, max], |throttle| lift(throttle) >= thrust_n))
+}
+
 /// The largest thrust (N) and torque (N m) of each unit at `[k_f, k_Q]`.
 pub fn scales(airframe: &Airframe, factors: [f64; 2]) -> Vec<[f64; 2]> {
-    let scale = |pair| PairMap::new(pair, &airframe.throttle).scale();
-    let scales: Vec<[f64; 2]> = airframe.kinds().map(scale).collect();
+    let scale = |view: crate::airframe::View<'_, _>| PairMap::of_kind(view.of, &view.throttle).scale();
+    let scales: Vec<[f64; 2]> = airframe.views().map(scale).collect();
     let units = airframe.units.iter();
     units
-        .map(|unit| [0, 1].map(|k| factors[k] * scales[unit.pair][k]))
+        .map(|unit| [0, 1].map(|k| factors[k] * scales[unit.kind][k]))
         .collect()
 }
 
@@ -37,6 +82,17 @@ impl PairMap {
     pub fn new(pair: &Pair, throttle: &Throttle) -> Self {
         let range = [throttle.min, throttle.max];
         Self::of(pair.basis, &pair.thrust_n, &pair.torque_nm, range)
+    }
+
+    /// The map of a unit over the allowed throttles: that of a single rotor is constant along the lower throttle.
+    pub fn of_kind(kind: Kind<'_>, throttle: &Throttle) -> Self {
+        let RotorAlone { thrust_n, torque_nm } = match kind {
+            Kind::Pair(pair) => return PairMap::new(pair, throttle),
+            Kind::SingleRotor(rotor) => &rotor.alone,
+        };
+        let terms = |[a1, a2, a3]: &[f64; 3]| [*a3, 0.0, 0.0, 0.0, *a2, 0.0, 0.0, *a1, 0.0];
+        let range = [throttle.min, throttle.max];
+        Self::of(Basis::Cubic, &terms(thrust_n), &terms(torque_nm), range)
     }
 
     /// The map of these coefficients, N and N m, one per term of the basis, over a range of throttle.
@@ -55,6 +111,13 @@ impl PairMap {
             map.rows = map.rows.max(i + 1);
         }
         map
+    }
+
+    /// The terms in the throttle of the upper (0) or of the lower (1) rotor alone, from the fourth power down to the first,
+    /// N and N m.
+    pub fn along(&self, side: usize) -> [[f64; 2]; 4] {
+        let term = |power: usize| [self.coefficients[power][0], self.coefficients[0][power]][side];
+        [4, 3, 2, 1].map(term)
     }
 
     /// Least and largest throttle.

@@ -9,16 +9,16 @@ use crate::airframe::{Airframe, Unit};
 pub struct Physics<'a> {
     /// The airframe.
     pub airframe: &'a Airframe,
-    /// Its pair, the first one where units differ.
-    pub map: &'a PairMap,
+    /// The forward map of each unit.
+    pub maps: &'a [PairMap],
 }
 
 impl Physics<'_> {
     /// `[roll, pitch, yaw, thrust]` (N m, N) of a throttle per channel at the factors `[k_f, k_Q]`, with
     /// [`Airframe::factors`] those of a voltage and a density.
     pub fn wrench<T: Copy + Into<f64>>(&self, throttle: &[T], factors: [f64; 2], health: Health) -> [f64; 4] {
-        let efforts = |unit: &Unit| self.efforts(unit, throttle, health);
-        self.wrench_of(self.airframe.units.iter().map(efforts), factors)
+        let efforts = |unit: usize| self.efforts(unit, throttle, health);
+        self.wrench_of((0..self.airframe.units.len()).map(efforts), factors)
     }
 
     /// The same of the units' efforts `[f, Q]` at the reference voltage: the force f a at r and the
@@ -38,27 +38,21 @@ impl Physics<'_> {
         wrench
     }
 
-    /// `[f, Q]` (N, N m) of a unit at the reference voltage. A rotor that is out gives nothing; its partner gives what the file says
-    /// of a rotor alone, else the pair's polynomial at throttle 0 of the other.
-    pub fn efforts<T: Copy + Into<f64>>(&self, unit: &Unit, throttle: &[T], health: Health) -> [f64; 2] {
+    /// `[f, Q]` (N, N m) of a unit, by index, at the reference voltage. A rotor that is out gives nothing; its partner gives what
+    /// the file says of a rotor alone, else the pair's polynomial at throttle 0 of the other.
+    pub fn efforts<T: Copy + Into<f64>>(&self, unit: usize, throttle: &[T], health: Health) -> [f64; 2] {
+        let (unit, map): (&Unit, _) = (&self.airframe.units[unit], &self.maps[unit]);
         let [u, l] = unit.throttles(throttle);
         let is_out = |channel: usize| health.has_failed(channel as u8);
         // A single rotor is a pair whose lower rotor is out.
         let out = [is_out(unit.upper_channel), unit.lower_channel.is_none_or(is_out)];
-        let pair = self.airframe.pair_of(unit);
-        let own = (unit.pair != 0).then(|| PairMap::new(pair, &self.airframe.throttle));
-        let map = own.as_ref().unwrap_or(self.map);
-        match out {
-            [false, false] => map.efforts([u, l]),
-            [true, true] => [0.0; 2],
-            [false, true] => match &pair.lower_out {
-                Some(alone) => alone.efforts(u),
-                None => map.efforts([u, 0.0]),
-            },
-            [true, false] => match &pair.upper_out {
-                Some(alone) => alone.efforts(l),
-                None => map.efforts([0.0, l]),
-            },
-        }
+        let pair = self.airframe.kind_of(unit).pair();
+        let (alone, [u, l]) = match out {
+            [false, false] => (None, [u, l]),
+            [true, true] => return [0.0; 2],
+            [false, true] => (pair.and_then(|pair| pair.lower_out.as_ref()), [u, 0.0]),
+            [true, false] => (pair.and_then(|pair| pair.upper_out.as_ref()), [0.0, l]),
+        };
+        alone.map_or_else(|| map.efforts([u, l]), |alone| alone.efforts(u + l))
     }
 }

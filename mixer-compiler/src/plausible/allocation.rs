@@ -1,7 +1,7 @@
 //! Rules on what the mixer is asked to keep: yaw, and the torque of least power.
 
-use super::rule::{Facts, Rule};
-use crate::airframe::{Airmode, Axis};
+use super::rule::{Facts, KindFacts, Rule};
+use crate::airframe::{Airmode, Axis, Pair};
 use crate::diagnostic::{Code, number, rounded};
 use crate::model::effectiveness::Effectiveness;
 
@@ -20,7 +20,7 @@ fn furthest(facts: &Facts<'_>, effectiveness: &Effectiveness, sign: f64) -> [f64
         [sign * on(Axis::Yaw), on(Axis::Thrust)]
     };
     (0..units).fold([0.0; 2], |[yaw, thrust], unit| {
-        let border = &facts.borders[facts.airframe.units[unit].pair];
+        let border = &facts.kinds[facts.airframe.units[unit].kind].border;
         let given = border.iter().map(|efforts| give(unit, efforts));
         let [y, t] = given.max_by(|a, b| a[0].total_cmp(&b[0])).unwrap_or_default();
         [yaw + y, thrust + t]
@@ -80,9 +80,8 @@ pub(super) fn yaw(facts: &Facts<'_>) -> Vec<Rule> {
 const POWER_BIAS: &str = "allocation.power_bias_nm_per_n";
 
 /// A bias that the pair cannot give at half of its largest thrust, about where vehicles hover.
-pub(super) fn power_bias(facts: &Facts<'_>) -> Vec<Rule> {
-    let airframe = facts.airframe;
-    let bias = airframe.allocation.power_bias_nm_per_n;
+pub(super) fn power_bias(facts: &KindFacts<'_>, _: &Pair) -> Vec<Rule> {
+    let bias = facts.view.allocation.power_bias_nm_per_n;
     if bias == 0.0 {
         return Vec::new();
     }
@@ -132,10 +131,10 @@ pub(super) fn idle_power_bias(facts: &Facts<'_>) -> Vec<Rule> {
 }
 
 /// Least and most torque of a unit at a thrust, N m, by the border of its attainable set.
-fn torques(facts: &Facts<'_>, thrust: f64) -> [f64; 2] {
-    let next = facts.borders[0].iter().cycle().skip(1);
+fn torques(facts: &KindFacts<'_>, thrust: f64) -> [f64; 2] {
+    let next = facts.border.iter().cycle().skip(1);
     let mut range = [f64::INFINITY, f64::NEG_INFINITY];
-    for ([f0, q0], [f1, q1]) in facts.borders[0].iter().zip(next) {
+    for ([f0, q0], [f1, q1]) in facts.border.iter().zip(next) {
         if (f0 - thrust) * (f1 - thrust) <= 0.0 && f1 != f0 {
             let q = q0 + (q1 - q0) * (thrust - f0) / (f1 - f0);
             range = [range[0].min(q), range[1].max(q)];

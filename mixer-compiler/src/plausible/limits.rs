@@ -2,8 +2,8 @@
 
 use mixer_rt::tables::REQUEST_LIMIT;
 
-use super::rule::{Facts, Rule};
-use crate::airframe::{Airframe, Axis};
+use super::rule::{KindFacts, Rule};
+use crate::airframe::{Airframe, Axis, Kind, View};
 use crate::diagnostic::{Code, Diagnostic, number, rounded};
 use crate::model::effectiveness::Effectiveness;
 use crate::model::{PairMap, law, scales};
@@ -43,8 +43,8 @@ fn tolerances(airframe: &Airframe, scale: [f64; 2]) -> impl Iterator<Item = Rule
 }
 
 /// Tolerances above a hundredth of the largest effort that are no errors.
-pub(super) fn wide_tolerances(facts: &Facts<'_>) -> Vec<Rule> {
-    let rules = tolerances(facts.airframe, facts.scale);
+pub(super) fn wide_tolerances(facts: &KindFacts<'_>) -> Vec<Rule> {
+    let rules = tolerances(&facts.view, facts.scale);
     rules.filter(|rule| rule.code == Code::WideTolerance).collect()
 }
 
@@ -52,12 +52,10 @@ pub(super) fn wide_tolerances(facts: &Facts<'_>) -> Vec<Rule> {
 ///
 /// # Errors
 /// A tolerance above a tenth of a unit's largest effort.
-pub(crate) fn check_tolerances(airframe: &Airframe) -> Result<(), Vec<Diagnostic>> {
-    let mut faults = Vec::new();
-    let rules = tolerances(airframe, PairMap::new(&airframe.pair, &airframe.throttle).scale());
-    for rule in rules.filter(|rule| rule.code == Code::ToleranceAbsurd) {
-        rule.check(airframe, &mut faults);
-    }
+pub(crate) fn check_tolerances(view: &View<'_, Kind<'_>>) -> Result<(), Vec<Diagnostic>> {
+    let rules = tolerances(view, PairMap::of_kind(view.of, &view.throttle).scale());
+    let absurd = rules.filter(|rule| rule.code == Code::ToleranceAbsurd);
+    let faults: Vec<Diagnostic> = absurd.filter_map(|rule| rule.told_of(view)).collect();
     if faults.is_empty() { Ok(()) } else { Err(faults) }
 }
 
@@ -78,13 +76,19 @@ pub(crate) fn check_authority(
     };
     let unit = if axis == Axis::Thrust { "N" } else { "N m" };
     let key = if axis == Axis::Yaw {
-        "pair.torque_nm"
+        "torque_nm"
     } else {
-        "pair.thrust_n"
+        "thrust_n"
     };
+    let word = if airframe.pairs.is_empty() {
+        "rotor[0]"
+    } else {
+        "pair"
+    };
+    let key = format!("{word}.{key}");
     Err(vec![airframe.diagnostic(
         Code::Authority,
-        key,
+        &key,
         format!(
             "the rotors give {} {unit} of {axis}; requests are limited to {} {unit}",
             rounded(most(axis)),

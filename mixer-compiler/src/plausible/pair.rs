@@ -1,6 +1,7 @@
-//! Rules on the pair's map, its idle and its power.
+//! Rules on the map of a unit, its idle and its power.
 
-use super::rule::{Facts, Rule};
+use super::rule::{Facts, KindFacts, Rule};
+use crate::airframe::Pair;
 use crate::diagnostic::{Code, number, rounded};
 use crate::model::{GROWTH, TORQUE_SPAN_M};
 
@@ -42,8 +43,8 @@ const POWERS: f64 = 2.0;
 const POWER_GROWTH: [f64; 2] = [1.2, 3.5];
 
 /// Thrust over torque tells the units of both.
-pub(super) fn units(facts: &Facts<'_>) -> Vec<Rule> {
-    let torques = facts.borders[0].iter().map(|[_, q]| *q);
+pub(super) fn units(facts: &KindFacts<'_>) -> Vec<Rule> {
+    let torques = facts.border.iter().map(|[_, q]| *q);
     let span = torques.clone().fold(f64::NEG_INFINITY, f64::max) - torques.fold(f64::INFINITY, f64::min);
     let thrust = facts.scale[0];
     let ratio = span / thrust;
@@ -86,17 +87,10 @@ pub(super) fn units(facts: &Facts<'_>) -> Vec<Rule> {
 }
 
 /// Both rotors together: in a wake they give less thrust than the sum of each alone, 0.77 to 0.92 of
-/// it on real maps. At idle they leave most of it to control with.
-pub(super) fn thrust(facts: &Facts<'_>) -> Vec<Rule> {
+/// it on real maps.
+pub(super) fn wake(facts: &KindFacts<'_>, _: &Pair) -> Vec<Rule> {
     let alone = facts.upper[0] + facts.lower[0];
-    let [both, upper, lower, floor] =
-        [facts.full, facts.upper, facts.lower, facts.idle].map(|efforts| rounded(efforts[0]));
-    let (idle, most) = (facts.airframe.throttle.min, ARDUPILOT_MOST_SPIN_MIN);
-    let share = facts.idle[0] / facts.scale[0];
-    let ardupilot = match idle > most {
-        true => format!("; ArduPilot does not arm with a MOT_SPIN_MIN above {most}"),
-        false => String::new(),
-    };
+    let [both, upper, lower] = [facts.full, facts.upper, facts.lower].map(|efforts| rounded(efforts[0]));
     vec![
         Rule::at_most(Code::NotCoaxial, "pair.thrust_n", facts.full[0], alone).says(
             format!(
@@ -105,13 +99,32 @@ pub(super) fn thrust(facts: &Facts<'_>) -> Vec<Rule> {
             "more than the sum",
             "in a wake the sum falls; check the order of the coefficients, which that of the basis fixes",
         ),
+    ]
+}
+
+/// At idle a unit leaves most of its thrust to control with.
+pub(super) fn idle(facts: &KindFacts<'_>) -> Vec<Rule> {
+    let (idle, most) = (facts.view.throttle.min, ARDUPILOT_MOST_SPIN_MIN);
+    let (floor, share) = (rounded(facts.idle[0]), facts.idle[0] / facts.scale[0]);
+    let ardupilot = match idle > most {
+        true => format!("; ArduPilot does not arm with a MOT_SPIN_MIN above {most}"),
+        false => String::new(),
+    };
+    vec![
         Rule::at_most(Code::HighIdle, "throttle.min", share, IDLE_SHARE).says(
             format!("at idle one unit gives {floor} N, {:.0} % of its largest thrust", 100.0 * share),
             "always on",
             format!(
-                "an idle is typically 0.05 to 0.15; where the bench only began here, measure the pair further down{ardupilot}"
+                "an idle is typically 0.05 to 0.15; where the bench only began here, measure further down{ardupilot}"
             ),
         ),
+    ]
+}
+
+/// An idle with which ArduPilot does not arm.
+pub(super) fn spin_min(facts: &Facts<'_>) -> Vec<Rule> {
+    let (idle, most) = (facts.airframe.throttle.min, ARDUPILOT_MOST_SPIN_MIN);
+    vec![
         Rule::at_most(Code::SpinMin, "throttle.min", idle, most)
             .says(
                 format!("an idle of {}: ArduPilot does not arm with a MOT_SPIN_MIN above {most}", number(idle)),
@@ -134,18 +147,18 @@ fn power_law([from, to]: [f64; 2], [low, high]: [f64; 2]) -> f64 {
 /// less in a wake, 0.75 to 0.94 on real maps.
 const LEFT: [f64; 2] = [0.65, 1.0];
 
-/// How thrust grows, and what either rotor leaves of the other: a coefficient that is off or out of order
-/// shows there, whatever its size.
-pub(super) fn shape(facts: &Facts<'_>) -> Vec<Rule> {
-    const OTHERS: &[Code] = &[
-        Code::PairUnits,
-        Code::RotorsExchanged,
-        Code::NotCoaxial,
-        Code::LopsidedPair,
-        Code::PairShape,
-    ];
-    // Programs write a deviation beside their coefficients, which are then right as such.
-    let (label, mend) = match facts.airframe.pair.uncertainty {
+/// Warnings that say more than one of [`Code::PairShape`].
+const OF_SHAPE: &[Code] = &[
+    Code::PairUnits,
+    Code::RotorsExchanged,
+    Code::NotCoaxial,
+    Code::LopsidedPair,
+    Code::PairShape,
+];
+
+/// A rule on the shape of a map. Programs write a deviation beside their coefficients, which are then right as such.
+fn of_shape(facts: &KindFacts<'_>, holds: bool, message: String) -> Rule {
+    let (label, mend) = match facts.view.of.uncertainty() {
         None => (
             "a coefficient off?",
             "check each coefficient and their order, which that of the basis fixes",
@@ -155,46 +168,41 @@ pub(super) fn shape(facts: &Facts<'_>) -> Vec<Rule> {
             "see what identify or predict say of the bench file: pulses of another range, a linearised throttle, a load cell off",
         ),
     };
+    let rule = Rule::holds(Code::PairShape, "pair.thrust_n", holds);
+    rule.says(message, label, mend).unless_explained(OF_SHAPE)
+}
+
+/// How thrust grows: a coefficient that is off or out of order shows there, whatever its size.
+pub(super) fn growth(facts: &KindFacts<'_>) -> Vec<Rule> {
     let [idle, full] = facts.map.range();
     let middle = 0.5 * (idle + full);
     let half = facts.map.efforts([middle; 2])[0];
     let growth = power_law([half, facts.full[0]], [middle, full]);
-    let left = |own: [f64; 2], other: [f64; 2]| (facts.full[0] - other[0]) / (own[0] - facts.idle[0]);
-    let [upper, lower] = [left(facts.upper, facts.lower), left(facts.lower, facts.upper)];
-    let holds = [upper, lower]
-        .iter()
-        .all(|share| (LEFT[0]..=LEFT[1]).contains(share));
-    let rule = |holds, message: String| {
-        let rule = Rule::holds(Code::PairShape, "pair.thrust_n", holds);
-        rule.says(message, label, mend).unless_explained(OTHERS)
-    };
     let [least, most] = GROWTH;
-    vec![
-        rule(
-            (least..=most).contains(&growth),
-            format!(
-                "from throttles of {} to {} the thrust grows with their power {growth:.2}; pairs have {least} to {most}",
-                rounded(middle),
-                number(full)
-            ),
-        ),
-        rule(
-            holds,
-            format!(
-                "with the other rotor at full throttle the upper one adds {:.0} % of the thrust that it adds with the other \
-                 at idle, the lower one {:.0} %; pairs have {:.0} to {:.0} %",
-                100.0 * upper,
-                100.0 * lower,
-                100.0 * LEFT[0],
-                100.0 * LEFT[1]
-            ),
-        ),
-    ]
+    let message = format!(
+        "from throttles of {} to {} the thrust grows with their power {growth:.2}; rotors have {least} to {most}",
+        rounded(middle),
+        number(full)
+    );
+    vec![of_shape(facts, (least..=most).contains(&growth), message)]
+}
+
+/// What either rotor leaves of the other.
+pub(super) fn left(facts: &KindFacts<'_>, _: &Pair) -> Vec<Rule> {
+    let left = |own: [f64; 2], other: [f64; 2]| (facts.full[0] - other[0]) / (own[0] - facts.idle[0]);
+    let both = [left(facts.upper, facts.lower), left(facts.lower, facts.upper)];
+    let holds = both.iter().all(|share| (LEFT[0]..=LEFT[1]).contains(share));
+    let [upper, lower, least, most] = [both[0], both[1], LEFT[0], LEFT[1]].map(|share| 100.0 * share);
+    let message = format!(
+        "with the other rotor at full throttle the upper one adds {upper:.0} % of the thrust that it adds with the other \
+         at idle, the lower one {lower:.0} %; pairs have {least:.0} to {most:.0} %"
+    );
+    vec![of_shape(facts, holds, message)]
 }
 
 /// A pair that stands in.
-pub(super) fn borrowed(facts: &Facts<'_>) -> Vec<Rule> {
-    let from = &facts.airframe.pair.borrowed_from;
+pub(super) fn borrowed(_: &KindFacts<'_>, pair: &Pair) -> Vec<Rule> {
+    let from = &pair.borrowed_from;
     let rule = Rule::holds(Code::BorrowedPair, "pair.borrowed_from", from.is_empty());
     vec![rule.says(
         format!("the pair is that of {from}, not of this vehicle: its thrust, torque and hover are not yours"),
@@ -205,8 +213,8 @@ pub(super) fn borrowed(facts: &Facts<'_>) -> Vec<Rule> {
 
 /// Thrust over power tells the unit of the power; its growth and its two rotors, coefficients that
 /// are off.
-pub(super) fn power(facts: &Facts<'_>) -> Vec<Rule> {
-    let Some(power) = &facts.airframe.pair.power else {
+pub(super) fn power(facts: &KindFacts<'_>, pair: &Pair) -> Vec<Rule> {
+    let Some(power) = &pair.power else {
         return Vec::new();
     };
     let [idle, full] = facts.map.range();

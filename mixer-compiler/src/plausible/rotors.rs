@@ -1,7 +1,7 @@
 //! Rules on the two rotors of a pair against each other, and each alone.
 
-use super::rule::{Facts, Rule};
-use crate::airframe::Spin;
+use super::rule::{KindFacts, Rule};
+use crate::airframe::{Pair, Spin};
 use crate::diagnostic::{Code, rounded};
 use crate::model::wake::{self, Wake};
 
@@ -28,12 +28,12 @@ const KEYS: [&str; 2] = ["thrust_n", "torque_nm"];
 /// (full, idle), the paper's at (idle, full). The rotor in the wake takes less torque:
 /// [`wake`]. The lower rotor of a bench whose upper one turned counter-clockwise
 /// turns clockwise: it yaws to the left, but the torque counts it positive.
-pub(super) fn order(facts: &Facts<'_>) -> Vec<Rule> {
+pub(super) fn order(facts: &KindFacts<'_>, pair: &Pair) -> Vec<Rule> {
     let rule =
         |key: &str, is_plausible| Rule::holds(Code::RotorsExchanged, format!("pair.{key}"), is_plausible);
     let [by_upper, by_lower] = [facts.upper, facts.lower].map(|at| at[1] - facts.idle[1]);
     let (upper, lower) = (rounded(by_upper), rounded(by_lower));
-    let is_refused = facts.effectiveness.is_none();
+    let is_refused = facts.is_refused;
     let [low, high] = facts.map.range();
     let mean = wake::mean_torque(|at| facts.map.efforts(at)[1], [low, high]);
     let is_above = low <= WHOLE_MAP * high && Wake::of_torque(mean) == Wake::Above;
@@ -43,7 +43,7 @@ pub(super) fn order(facts: &Facts<'_>) -> Vec<Rule> {
             "expected a fall by the upper rotor, a rise by the lower one",
             "check which rotor is the upper one (identify --swap exchanges them) and the sign of the torque",
         ),
-        rule("upper_spin", facts.airframe.pair.upper_spin == Spin::Cw).says(
+        rule("upper_spin", pair.upper_spin == Spin::Cw).says(
             format!(
                 "at full throttle the lower rotor adds {lower} N m clockwise, but it turns clockwise itself where the upper \
                  one turned \"ccw\": yaw would go to the wrong side"
@@ -51,7 +51,7 @@ pub(super) fn order(facts: &Facts<'_>) -> Vec<Rule> {
             "expected \"cw\"",
             "write upper_spin = \"cw\" under [pair], whichever way the bench turned; those of the units are the real ones",
         ),
-        rule("torque_nm", is_refused || !is_above || facts.airframe.pair.lower_is_stronger)
+        rule("torque_nm", is_refused || !is_above || pair.lower_is_stronger)
             .says(
                 format!(
                     "the lower rotor takes more torque than the upper one at equal throttles: the mean torque over the box is \
@@ -68,7 +68,7 @@ pub(super) fn order(facts: &Facts<'_>) -> Vec<Rule> {
 
 /// Two rotors of one pair give about the same, and each alone about what it gives in the pair. A
 /// coefficient ten times off shows here.
-pub(super) fn sizes(facts: &Facts<'_>) -> Vec<Rule> {
+pub(super) fn sizes(facts: &KindFacts<'_>, pair: &Pair) -> Vec<Rule> {
     let mut rules = Vec::new();
     for (k, (what, unit)) in EFFORTS.into_iter().enumerate() {
         let (upper, lower, most) = (facts.upper[k], facts.lower[k], RATIOS[k]);
@@ -88,7 +88,7 @@ pub(super) fn sizes(facts: &Facts<'_>) -> Vec<Rule> {
                 .unless_explained(&[Code::PairUnits, Code::RotorsExchanged, Code::NotCoaxial]),
         );
     }
-    let (pair, [_, full]) = (&facts.airframe.pair, facts.map.range());
+    let [_, full] = facts.map.range();
     let tables = [
         ("lower_out", &pair.lower_out, facts.upper),
         ("upper_out", &pair.upper_out, facts.lower),

@@ -1,9 +1,9 @@
 //! The form of a rule, and the facts that rules read.
 
-use crate::airframe::{Airframe, Axis};
+use crate::airframe::{Airframe, Axis, Kind, View};
 use crate::diagnostic::{Code, Diagnostic};
+use crate::model::PairMap;
 use crate::model::effectiveness::Effectiveness;
-use crate::model::{PairMap, scales};
 
 /// Points per edge of the throttle box at which a unit's efforts are looked at.
 const POINTS: usize = 128;
@@ -60,23 +60,30 @@ impl Rule {
         Rule { reasons, ..self }
     }
 
-    /// Adds the warning to those `found` before, where the rule is broken.
-    pub(super) fn check(self, airframe: &Airframe, found: &mut Vec<Diagnostic>) {
-        let is_explained = found.iter().any(|warning| self.reasons.contains(&warning.code));
-        if !self.is_plausible && !is_explained {
-            found.push(airframe.diagnostic(self.code, &self.key, self.message, self.label, self.help));
-        }
+    /// Whether a warning may be the reason of this rule's.
+    pub(super) fn explains(&self, told: &Diagnostic) -> bool {
+        self.reasons.contains(&told.code)
+    }
+
+    /// The warning, where the rule is broken.
+    pub(super) fn told(self, airframe: &Airframe) -> Option<Diagnostic> {
+        let is_broken = !self.is_plausible;
+        is_broken.then(|| airframe.diagnostic(self.code, &self.key, self.message, self.label, self.help))
+    }
+
+    /// The warning of a kind of unit.
+    pub(super) fn told_of(self, view: &View<'_, Kind<'_>>) -> Option<Diagnostic> {
+        let is_broken = !self.is_plausible;
+        is_broken.then(|| view.diagnostic(self.code, &self.key, self.message, self.label, self.help))
     }
 }
 
-/// An airframe and what was found out about it. Efforts are `[f, Q]` of one unit at the reference
-/// voltage, N and N m, of the first pair where units differ.
-pub(super) struct Facts<'a> {
-    pub(super) airframe: &'a Airframe,
-    /// `None` where the airframe is refused.
-    pub(super) effectiveness: Option<&'a Effectiveness>,
+/// A kind of unit and what was found out about it. Efforts are `[f, Q]` of one unit at the reference voltage, N and N m.
+pub(super) struct KindFacts<'a> {
+    pub(super) view: View<'a, Kind<'a>>,
+    pub(super) is_refused: bool,
     pub(super) map: PairMap,
-    /// Largest thrust and largest absolute torque, of any unit.
+    /// Largest thrust and largest absolute torque.
     pub(super) scale: [f64; 2],
     /// Efforts at idle, of the upper and of the lower rotor at full throttle with the other at idle,
     /// and at full throttle.
@@ -84,33 +91,55 @@ pub(super) struct Facts<'a> {
     pub(super) upper: [f64; 2],
     pub(super) lower: [f64; 2],
     pub(super) full: [f64; 2],
-    /// Efforts along the border of the attainable set of each pair, and along the curve of each single rotor.
-    pub(super) borders: Vec<Vec<[f64; 2]>>,
+    /// Efforts along the border of the attainable set, of a single rotor along its curve.
+    pub(super) border: Vec<[f64; 2]>,
+}
+
+impl<'a> KindFacts<'a> {
+    pub(super) fn new(view: View<'a, Kind<'a>>, is_refused: bool) -> KindFacts<'a> {
+        let map = PairMap::of_kind(view.of, &view.throttle);
+        let [low, high] = map.range();
+        KindFacts {
+            view,
+            is_refused,
+            scale: map.scale(),
+            idle: map.efforts([low, low]),
+            upper: map.efforts([high, low]),
+            lower: map.efforts([low, high]),
+            full: map.efforts([high, high]),
+            border: map.border(POINTS).into_iter().map(|at| map.efforts(at)).collect(),
+            map,
+        }
+    }
+}
+
+/// An airframe and what was found out about it.
+pub(super) struct Facts<'a> {
+    pub(super) airframe: &'a Airframe,
+    /// Those of its kinds of units.
+    pub(super) kinds: &'a [KindFacts<'a>],
+    /// `None` where the airframe is refused.
+    pub(super) effectiveness: Option<&'a Effectiveness>,
+    /// Largest thrust and largest absolute torque, of any unit, at the reference voltage, N and N m.
+    pub(super) scale: [f64; 2],
     /// Least and largest bare thrust at the reference voltage, N; `None` where the airframe is
     /// refused.
     pub(super) thrust_range_n: Option<[f64; 2]>,
 }
 
 impl<'a> Facts<'a> {
-    pub(super) fn new(airframe: &'a Airframe, compiled: Option<(&'a Effectiveness, [f64; 2])>) -> Facts<'a> {
-        let map = PairMap::new(&airframe.pair, &airframe.throttle);
-        let [low, high] = map.range();
-        let scales = scales(airframe, [1.0; 2]);
-        let border = |pair| {
-            let map = PairMap::new(pair, &airframe.throttle);
-            map.border(POINTS).into_iter().map(|at| map.efforts(at)).collect()
-        };
+    pub(super) fn new(
+        airframe: &'a Airframe,
+        kinds: &'a [KindFacts<'a>],
+        compiled: Option<(&'a Effectiveness, [f64; 2])>,
+    ) -> Facts<'a> {
+        let most = |k: usize| kinds.iter().fold(0.0, |most: f64, of| most.max(of.scale[k]));
         Facts {
             airframe,
+            kinds,
             effectiveness: compiled.map(|(effectiveness, _)| effectiveness),
-            scale: [0, 1].map(|k| scales.iter().fold(0.0, |most: f64, scale| most.max(scale[k]))),
-            idle: map.efforts([low, low]),
-            upper: map.efforts([high, low]),
-            lower: map.efforts([low, high]),
-            full: map.efforts([high, high]),
-            borders: airframe.kinds().map(border).collect(),
+            scale: [most(0), most(1)],
             thrust_range_n: compiled.map(|(_, range)| range),
-            map,
         }
     }
 

@@ -29,7 +29,7 @@ const TO_ONE: &str = "run identify again with --voltage-exponent 1.75 --cells N,
 /// known; without `[vehicle]` it may be a pair on a stand.
 pub(super) fn voltage(facts: &Facts<'_>) -> Vec<Rule> {
     let Some(voltage) = &facts.airframe.voltage else {
-        let help = match facts.airframe.pairs().find_map(|pair| pair.bench_v) {
+        let help = match facts.airframe.pairs.iter().find_map(|pair| pair.bench_v) {
             Some(_) => TO_ONE,
             None => {
                 "add [voltage] with reference_v (the bench's), range_v (the pack's), thrust_exponent and torque_exponent \
@@ -62,7 +62,7 @@ pub(super) fn voltage(facts: &Facts<'_>) -> Vec<Rule> {
             "multiply reference_v, range_v and the voltages of points by the number of cells in series",
         ),
     ];
-    for [low, high] in facts.airframe.pairs().filter_map(|pair| pair.bench_v) {
+    for [low, high] in facts.airframe.pairs.iter().filter_map(|pair| pair.bench_v) {
         let near = [(1.0 - APART) * high, (1.0 + APART) * low];
         rules.push(
             Rule::within(Code::SagTwice, "voltage.reference", voltage.reference, near).says(

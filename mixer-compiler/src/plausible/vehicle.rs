@@ -22,18 +22,15 @@ pub(super) fn rotor_inertia(facts: &Facts<'_>) -> Vec<Rule> {
     let Some((stated, mass_kg)) = stated else {
         return Vec::new();
     };
-    let Some(usual) = Flywheel::new(facts.airframe, mass_kg, None) else {
-        return Vec::new();
-    };
-    let usual = usual.inertia_kg_m2;
-    let rule = Rule::within(
-        Code::RotorInertia,
-        "vehicle.rotor_inertia_kg_m2",
-        stated,
-        [usual / INERTIA_OFF, usual * INERTIA_OFF],
-    );
-    vec![
-        rule.says(
+    let rule = |usual: Flywheel| {
+        let usual = usual.inertia_kg_m2;
+        Rule::within(
+            Code::RotorInertia,
+            "vehicle.rotor_inertia_kg_m2",
+            stated,
+            [usual / INERTIA_OFF, usual * INERTIA_OFF],
+        )
+        .says(
             format!(
                 "an inertia of {} kg m2, where a rotor of this thrust has about {usual:.0e}",
                 number(stated)
@@ -41,8 +38,10 @@ pub(super) fn rotor_inertia(facts: &Facts<'_>) -> Vec<Rule> {
             "not a rotor of this thrust",
             "kg m2 of one rotor with its motor's bell about its axis: 1 kg m2 is 1e7 g cm2; leave the key out where it is not known",
         )
-        .unless_explained(&[Code::PairUnits, Code::TooLight]),
-    ]
+        .unless_explained(&[Code::PairUnits, Code::TooLight, Code::RotorInertia])
+    };
+    let usual = Flywheel::of_mass(facts.airframe, mass_kg, None).into_iter();
+    usual.flatten().map(rule).collect()
 }
 
 /// Too heavy to hover at the lowest voltage, or so light that it rises at idle at the highest, or

@@ -17,13 +17,15 @@ const BORDER: f64 = 2e-3;
 /// Share of the attainable set's area by which a description may be smaller than stated.
 const AREA: f64 = 5e-3;
 
-/// Points on the sides are attainable, and between them is the area that is stated, of units of this
-/// scale (largest thrust and torque, N and N m).
-pub(super) fn check(compiled: &Compiled, scale: [f64; 2]) -> Result<(), String> {
+/// Points on the sides are attainable, and between them is the area that is stated.
+pub(super) fn check(compiled: &Compiled) -> Result<(), String> {
     let (Some(table), Ok(lost)) = (&compiled.tables.closed_form, compiled.lost_outside_border) else {
         return Ok(());
     };
-    let area = twice_area(&compiled.pair.scaled_border(SAMPLES));
+    let (scale, area) = (
+        compiled.maps[0].scale(),
+        twice_area(&compiled.maps[0].scaled_border(SAMPLES)),
+    );
     let ClosedForm {
         border,
         thrust_n: [least, most],
@@ -56,8 +58,8 @@ pub(super) fn check(compiled: &Compiled, scale: [f64; 2]) -> Result<(), String> 
 /// The efforts are attained by the emitted inverse; else the words for what they are of.
 fn check_attained(compiled: &Compiled, scale: [f64; 2], efforts: [f32; 2], of: &str) -> Result<(), String> {
     let tables = &compiled.tables;
-    let throttles = tables.throttles(efforts);
-    let given = compiled.pair.efforts(throttles.map(f64::from));
+    let throttles = tables.throttles(0, efforts).unwrap_or_default();
+    let given = compiled.maps[0].efforts(throttles.map(f64::from));
     for k in 0..2 {
         let missed = (given[k] - f64::from(efforts[k])).abs();
         let is_near = missed <= 2.0 * f64::from(tables.tolerance.efforts[k]) + BORDER * scale[k];

@@ -2,6 +2,7 @@
 
 use super::enclosure_tests::numbers;
 use super::*;
+use crate::airframe::Airframe;
 use crate::diagnostic::source::Source;
 
 fn airframe_text(name: &str) -> String {
@@ -17,9 +18,9 @@ fn compiled(text: String) -> crate::compiled::Compiled {
 fn prove_again(compiled: &crate::compiled::Compiled, tables: &crate::tables::MixerTables) -> Certificate {
     let correction = CorrectionBounds::new(&compiled.airframe, &tables.corrections);
     let tolerance = correction.tolerance_at_reference(&compiled.airframe);
-    let aim = [0, 1].map(|k| (1.15 * compiled.residual.efforts[k]).min(tolerance[k]));
+    let aim = [0, 1].map(|k| (1.15 * compiled.of_pairs[0].residual.efforts[k]).min(tolerance[k]));
     prove(
-        &compiled.airframe,
+        &compiled.airframe.pair_views().next().unwrap(),
         &tables.map(),
         &correction,
         aim,
@@ -56,11 +57,11 @@ fn nothing_is_observed_beyond_the_bound() {
     for (name, text) in texts {
         let compiled = compiled(text);
         let (airframe, tables) = (&compiled.airframe, &compiled.tables);
-        let certificate = &compiled.certificate;
-        assert!(certificate.agrees(&compiled.residual), "{name}");
+        let certificate = &compiled.of_pairs[0].certificate;
+        assert!(certificate.agrees(&compiled.of_pairs[0].residual), "{name}");
         let mut next = numbers();
         let mut worst = [0.0f64; 2];
-        let pair = &compiled.pair;
+        let pair = &compiled.maps[0];
         let view = tables.view();
         for index in 0..40_000 {
             // Half of the points on the border and close to it.
@@ -89,7 +90,7 @@ fn nothing_is_observed_beyond_the_bound() {
             }
             let per = computed.map(|factor| 1.0 / factor);
             let asked = [0, 1].map(|m: usize| (k[m] * efforts[m]) as f32 * per[m]);
-            let found = tables.throttles(asked);
+            let found = tables.throttles(0, asked).unwrap();
             for throttle in found {
                 assert!(throttle >= tables.throttle.min && throttle <= tables.throttle.max);
             }
@@ -107,8 +108,8 @@ fn nothing_is_observed_beyond_the_bound() {
         }
         // Rounding, the voltage table's included, is some 2e-5 N: where the bound is well above, it
         // is within a quarter of what was seen.
-        let sharp = compiled.residual.efforts[0] > 2e-4;
-        let ratio = certificate.over_observed(&compiled.residual);
+        let sharp = compiled.of_pairs[0].residual.efforts[0] > 2e-4;
+        let ratio = certificate.over_observed(&compiled.of_pairs[0].residual);
         assert!(
             !sharp || ratio.iter().all(|&ratio| ratio <= 1.25),
             "{name}: {ratio:?}"
@@ -128,13 +129,13 @@ fn airframe_tolerance(airframe: &Airframe) -> [f64; 2] {
 #[test]
 fn flipped_bits_are_refused_where_they_matter() {
     let compiled = compiled(airframe_text("airframes/isae-x8.toml"));
-    let pair = &compiled.pair;
+    let pair = &compiled.maps[0];
     let (mut refused, mut harmless) = (0, 0);
     for place in 0..18 {
         for bit in [30, 26, 23, 22, 20, 17, 8, 0] {
             let mut tables = compiled.tables.clone();
             let slot = {
-                let inverse = &mut tables.inverse;
+                let inverse = &mut tables.pairs[0].inverse;
                 let factors = inverse.forms.iter_mut().flatten();
                 factors
                     .chain(inverse.coefficients.iter_mut().flatten())
@@ -173,9 +174,9 @@ fn a_wrong_forward_map_is_refused() {
     for bit in [23, 20, 16] {
         let mut tables = compiled.tables.clone();
         let crate::tables::QuantityTable::Biquadratic(mixer_rt::tables::Biquadratic(terms)) =
-            &mut tables.pair.thrust
+            &mut tables.pairs[0].pair.thrust
         else {
-            panic!("{:?}", tables.pair)
+            panic!("{:?}", tables.pairs[0].pair)
         };
         terms[2] = f32::from_bits(terms[2].to_bits() ^ (1 << bit));
         assert!(!prove_again(&compiled, &tables).holds(), "bit {bit}");
@@ -226,15 +227,15 @@ fn delivered_efforts_do_not_look_missed() {
         .replace("tolerance_nm = 1e-4", "tolerance_nm = 8e-7");
     let compiled = compiled(text);
     let tables = &compiled.tables;
-    let pair = &compiled.pair;
-    let proven = compiled.certificate.reference;
+    let pair = &compiled.maps[0];
+    let proven = compiled.of_pairs[0].certificate.reference;
     let slack = [0, 1].map(|k| f64::from(tables.tolerance.efforts[k]) - proven[k]);
     let mut next = numbers();
     let mut largest = [0.0f64; 2];
     for _ in 0..20_000 {
         let throttles = [0, 1].map(|_| (0.55 + 0.45 * next()) as f32);
         let (computed, exactly) = (
-            tables.pair.efforts(throttles),
+            tables.pairs[0].pair.efforts(throttles),
             pair.efforts(throttles.map(|throttle| pair.clamp(f64::from(throttle)))),
         );
         let asked = exactly.map(|effort| effort as f32);
@@ -255,21 +256,21 @@ fn delivered_efforts_do_not_look_missed() {
 #[test]
 fn limited_corners_are_bounded() {
     let compiled = compiled(airframe_text("airframes/isae-x8.toml"));
-    let (airframe, pair) = (&compiled.airframe, &compiled.pair);
+    let (airframe, pair) = (&compiled.airframe, &compiled.maps[0]);
     let correction = CorrectionBounds::new(airframe, &compiled.tables.corrections);
     let [low, high] = [airframe.throttle.min, airframe.throttle.max];
     let mut next = numbers();
     let (mut bounded, mut limited, mut nearest) = (0, 0, 0.0f64);
     for round in 0..600 {
         let mut tables = compiled.tables.clone();
-        for coefficient in tables.inverse.coefficients.iter_mut().flatten() {
+        for coefficient in tables.pairs[0].inverse.coefficients.iter_mut().flatten() {
             *coefficient *= 1.0 + 0.1 * next() as f32;
         }
         let share = next().abs();
         let half = 0.05 * share * share * share + 1e-6;
         let corner = [round & 1, round >> 1 & 1].map(|side| if side == 1 { high - half } else { low + half });
         let map = tables.map();
-        let subject = Subject::new(airframe, &map, &correction);
+        let subject = Subject::new(&airframe.pair_views().next().unwrap(), &map, &correction);
         let bound = subject.residual(&ThrottleCell {
             centre: corner,
             half: [half; 2],
@@ -279,7 +280,8 @@ fn limited_corners_are_bounded() {
             let throttles = corner.map(|centre| pair.clamp(centre + 1.02 * half * next().clamp(-0.98, 0.98)));
             let efforts = pair.efforts(throttles);
             let found = tables
-                .throttles(efforts.map(|effort| effort as f32))
+                .throttles(0, efforts.map(|effort| effort as f32))
+                .unwrap()
                 .map(f64::from);
             limited += u32::from(found.iter().all(|found| *found <= low || *found >= high));
             let given = pair.efforts(found);

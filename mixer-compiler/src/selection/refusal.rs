@@ -1,6 +1,6 @@
 //! The refusal of a tolerance that no evaluator meets, with what is proven.
 
-use crate::airframe::{Airframe, Method};
+use crate::airframe::{Method, Pair, View};
 use crate::diagnostic::{Code, Diagnostic, number, rounded_up};
 use crate::inverse::evaluator::Evaluator;
 use crate::model::injectivity::EnclosedPairMap;
@@ -11,13 +11,17 @@ use crate::proof::Certificate;
 const NEAR_FOLD: f64 = 1.1;
 
 /// The refusal of a tolerance. `evaluator` came closest, with what is proven of it.
-pub(super) fn tolerance(airframe: &Airframe, evaluator: Evaluator, certificate: &Certificate) -> Diagnostic {
-    let inverse = &airframe.inverse;
+pub(super) fn tolerance(
+    view: &View<'_, &Pair>,
+    evaluator: Evaluator,
+    certificate: &Certificate,
+) -> Diagnostic {
+    let inverse = &view.inverse;
     let reached = certificate.stated;
     let stated = inverse.tolerances();
-    let least = EnclosedPairMap::new(&airframe.pair).least_idle(airframe.throttle.max);
+    let least = EnclosedPairMap::new(view.of).least_idle(view.throttle.max);
     let idle = least
-        .filter(|least| airframe.throttle.min < NEAR_FOLD * least)
+        .filter(|least| view.throttle.min < NEAR_FOLD * least)
         .map(|least| {
             format!(
                 "the map folds just below this idle, at {}: raise throttle.min to {} or more",
@@ -33,11 +37,11 @@ pub(super) fn tolerance(airframe: &Airframe, evaluator: Evaluator, certificate: 
         ),
     };
     let key = match &idle {
-        Some(_) if !airframe.states(missed.0) => "throttle.min",
+        Some(_) if !view.states(missed.0) => "throttle.min",
         _ => missed.0,
     };
     if !reached.iter().all(|bound| bound.is_finite()) {
-        return airframe.diagnostic(
+        return view.diagnostic(
             Code::Tolerance,
             "throttle.min",
             format!("nothing can be proven of the {}", evaluator.description()),
@@ -55,7 +59,7 @@ pub(super) fn tolerance(airframe: &Airframe, evaluator: Evaluator, certificate: 
         ),
     };
     let [reached_f, reached_q] = reached.map(rounded_up);
-    airframe.diagnostic(
+    view.diagnostic(
         Code::Tolerance,
         key,
         format!("{message} a tolerance of {}", missed.1),

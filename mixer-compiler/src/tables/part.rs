@@ -2,8 +2,8 @@
 //! The fields of each type are named once, below.
 
 use mixer_rt::tables::{
-    Airmode, Border, Cell, ClosedForm, ClosedFormUnit, Facets, Grid, Kind, Knot, Law, LawPiece, Outline,
-    Pair, Priorities, SingleRotor, Steep, ThrottleRange, Tolerance, Unit, Unlike, WithSingleRotors,
+    Airmode, Border, Cell, ClosedForm, ClosedFormUnit, Facets, Grid, Knot, Law, LawPiece, Outline, Pair,
+    PairKind, Priorities, RotorAlone, Steep, ThrottleRange, Tolerance, Unit, Unlike,
 };
 use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::{ToTokens, quote};
@@ -101,12 +101,11 @@ macro_rules! parts {
 }
 
 parts! {
-    Unit { allocation, effectiveness, channels };
+    Unit { allocation, effectiveness, channels, kind };
     Pair<QuantityTable> { thrust, torque };
-    SingleRotor { thrust, torque };
-    Kind<QuantityTable, InverseTable> { pair, singles, inverse, mean_square_slopes };
-    Unlike<'_, QuantityTable, InverseTable> { kinds, of };
-    WithSingleRotors<'_, QuantityTable, InverseTable> { unlike, rotors, passes };
+    RotorAlone { thrust, torque };
+    PairKind<QuantityTable, InverseTable> { pair, alone, inverse, mean_square_slopes };
+    Unlike<'_, QuantityTable, InverseTable, true> { pairs, single_rotors };
     ThrottleRange { min, max };
     Law<'_> { reference, range, pieces };
     LawPiece { start, thrust, torque };

@@ -37,7 +37,6 @@ use core::hint::black_box;
 
 use crate::Wrench;
 use crate::allocate::priorities::Airmode;
-use crate::pair::{Inverse, PolynomialInverse, SingleRotor, Unlike, WithSingleRotors};
 
 /// The largest number of units.
 const MOST_CLOSED_FORM_UNITS: usize = 4;
@@ -111,88 +110,34 @@ pub struct ClosedForm<'a> {
 
 /// Whether an airframe's tables have a closed form of allocation, or the interior point method serves
 /// what least norm cannot.
-pub trait AllocationMethod<P> {
-    /// The inverse map of unlike pairs.
-    type Inverse: Inverse;
-
-    /// Whether the frame may have single rotors: images of other frames leave out what serves them.
-    const MAY_HAVE_SINGLE_ROTORS: bool = false;
-
+pub trait AllocationMethod {
     /// The closed form, where there is one.
-    #[inline(always)]
-    fn closed_form(&self) -> Option<&ClosedForm<'_>> {
-        None
-    }
-
-    /// The kinds of units, where they differ.
-    #[inline(always)]
-    fn unlike(&self) -> Option<&Unlike<'_, P, Self::Inverse>> {
-        None
-    }
-
-    /// The kinds of single rotors.
-    #[inline(always)]
-    fn single_rotors(&self) -> &[[SingleRotor; 2]] {
-        &[]
-    }
-
-    /// Passes of least norm over them.
-    #[inline(always)]
-    fn passes(&self) -> u8 {
-        0
-    }
+    fn closed_form(&self) -> Option<&ClosedForm<'_>>;
 }
 
-/// An inverse that no airframe has.
-type NoInverse = PolynomialInverse<[f32; 1], 0>;
-
-/// No closed form: tilted axes, more than four units, or priorities that couple thrust and yaw.
+/// No closed form: tilted axes, more than four units, unlike ones, or priorities that couple thrust and yaw.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NoClosedForm;
 
-impl<P> AllocationMethod<P> for NoClosedForm {
-    type Inverse = NoInverse;
-}
-
-/// Unlike units have no closed form.
-impl<P, I: Inverse> AllocationMethod<P> for Unlike<'_, P, I> {
-    type Inverse = I;
-
+impl AllocationMethod for NoClosedForm {
     #[inline(always)]
-    fn unlike(&self) -> Option<&Unlike<'_, P, I>> {
-        Some(self)
-    }
-}
-
-/// Nor have units with single rotors among them.
-impl<P, I: Inverse> AllocationMethod<P> for WithSingleRotors<'_, P, I> {
-    type Inverse = I;
-
-    const MAY_HAVE_SINGLE_ROTORS: bool = true;
-
-    #[inline(always)]
-    fn unlike(&self) -> Option<&Unlike<'_, P, I>> {
-        Some(&self.unlike)
-    }
-
-    #[inline(always)]
-    fn single_rotors(&self) -> &[[SingleRotor; 2]] {
-        self.rotors
-    }
-
-    #[inline(always)]
-    fn passes(&self) -> u8 {
-        self.passes
+    fn closed_form(&self) -> Option<&ClosedForm<'_>> {
+        None
     }
 }
 
 /// By reference, so that an image whose rotors never fail holds this table and not the rest.
-impl<P> AllocationMethod<P> for &ClosedForm<'_> {
-    type Inverse = NoInverse;
-
+impl AllocationMethod for &ClosedForm<'_> {
     #[inline(always)]
     fn closed_form(&self) -> Option<&ClosedForm<'_>> {
         Some(self)
+    }
+}
+
+/// Known at run time alone.
+impl AllocationMethod for Option<ClosedForm<'_>> {
+    fn closed_form(&self) -> Option<&ClosedForm<'_>> {
+        self.as_ref()
     }
 }
 

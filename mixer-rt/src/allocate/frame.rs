@@ -4,8 +4,8 @@ use super::system::Columns;
 use crate::layout::{Tables, Unit};
 
 /// A frame under one set of conditions, `VERTICAL` where all axes are.
-pub(super) struct Frame<'a, 't, P, I, S, const VERTICAL: bool> {
-    pub(super) tables: &'a Tables<'t, P, I, S>,
+pub(super) struct Frame<'a, 't, K, S, const VERTICAL: bool> {
+    pub(super) tables: &'a Tables<'t, K, S>,
     /// `[k_f, k_Q]`.
     pub(super) factors: [f32; 2],
     /// `[1 / k_f, 1 / k_Q]`.
@@ -14,9 +14,9 @@ pub(super) struct Frame<'a, 't, P, I, S, const VERTICAL: bool> {
     pub(super) ratio: f32,
 }
 
-impl<'a, 't, P, I, S, const VERTICAL: bool> Frame<'a, 't, P, I, S, VERTICAL> {
+impl<'a, 't, K, S, const VERTICAL: bool> Frame<'a, 't, K, S, VERTICAL> {
     #[inline(always)]
-    pub(super) fn new(tables: &'a Tables<'t, P, I, S>, factors: [f32; 2]) -> Self {
+    pub(super) fn new(tables: &'a Tables<'t, K, S>, factors: [f32; 2]) -> Self {
         let per_product = 1.0 / (factors[0] * factors[1]);
         let per_factor = [factors[1] * per_product, factors[0] * per_product];
         Frame {

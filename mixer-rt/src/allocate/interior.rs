@@ -36,7 +36,7 @@ use super::request::Request;
 use super::system::{Factors, Matrix, Products};
 use super::unit::UnitState;
 use super::unknown::Unknown;
-use crate::pair::{Expansion, Inverse, Quantity};
+use crate::pair::{Expansion, Kinds};
 use crate::{divided, larger, rolled};
 
 /// Iterations of the first run. Fewer leave more requests short, and make throttles step at the border of least
@@ -80,7 +80,7 @@ const SHARE: f32 = 0.97;
 /// Throttles of least norm nearer to a bound count as so near, as a share of the range.
 const CLOSE: f32 = 1e-3;
 
-impl<P: Quantity, I: Inverse, S: AllocationMethod<P>, const VERTICAL: bool> Frame<'_, '_, P, I, S, VERTICAL> {
+impl<K: Kinds, S: AllocationMethod, const VERTICAL: bool> Frame<'_, '_, K, S, VERTICAL> {
     /// Cuts the request by priority; true where its rows are met. The units' throttles are those that
     /// the answer is drawn to.
     #[inline(never)]
@@ -180,11 +180,7 @@ impl<P: Quantity, I: Inverse, S: AllocationMethod<P>, const VERTICAL: bool> Fram
                 mut value,
                 slopes,
                 curvatures,
-            } = unit.rotors.expansion(
-                tables.pair_of(index),
-                tables.singles_of(index),
-                unit.unknowns.map(|at| least + at.low),
-            );
+            } = tables.expansion(index, unit.rotors, unit.unknowns.map(|at| least + at.low));
             let gain = Products::<VERTICAL>::gains(&unit.columns, lambda);
             let mut responses = [[0.0; 3]; 2];
             for side in 0..2 {
@@ -256,13 +252,12 @@ impl<P: Quantity, I: Inverse, S: AllocationMethod<P>, const VERTICAL: bool> Fram
     /// Writes a unit's throttles at its unknowns and what it gives there.
     #[inline(always)]
     pub(super) fn place(&self, index: usize, unit: &mut UnitState) {
-        let (pair, singles) = (self.tables.pair_of(index), self.tables.singles_of(index));
         let range = &self.tables.throttle;
         for side in 0..2 {
             let throttle = range.clamp(range.min + unit.unknowns[side].low);
             unit.throttles[side] = if unit.rotors.turns(side) { throttle } else { 0.0 };
         }
-        unit.efforts = unit.rotors.efforts(pair, singles, unit.throttles);
+        unit.efforts = self.tables.efforts(index, unit.rotors, unit.throttles);
     }
 }
 

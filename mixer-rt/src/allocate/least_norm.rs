@@ -1,9 +1,4 @@
 //! Least norm with all rotors: the efforts M+ u of eq. (8), inverted unit by unit.
-//!
-//! M+ has a single rotor's torque in proportion to its thrust, which it is not quite. What it differs by is taken
-//! from the wrench, which moves the thrusts, and so on: the differences fall by a constant factor, of some hundredths,
-//! from one pass to the next. Each pass has one step along every single rotor's curve. The compiler bounds what is
-//! left, and gives a frame as many passes as its tolerances need.
 
 use core::mem::replace;
 
@@ -12,10 +7,10 @@ use super::frame::Frame;
 use super::unit::UnitState;
 use crate::clamp;
 use crate::layout::Unit;
-use crate::pair::{Inverse, Quantity};
+use crate::pair::Kinds;
 use crate::rolled;
 
-impl<P: Quantity, I: Inverse, S: AllocationMethod<P>, const VERTICAL: bool> Frame<'_, '_, P, I, S, VERTICAL> {
+impl<K: Kinds, S: AllocationMethod, const VERTICAL: bool> Frame<'_, '_, K, S, VERTICAL> {
     /// Efforts of least norm of a unit for a wrench (N m, N), at the reference voltage.
     #[inline(always)]
     pub(super) fn least_norm(&self, unit: &Unit, wrench: &[f32; 4]) -> [f32; 2] {
@@ -23,53 +18,15 @@ impl<P: Quantity, I: Inverse, S: AllocationMethod<P>, const VERTICAL: bool> Fram
         [f * self.per_factor[0], q * self.per_factor[1]]
     }
 
-    /// Writes the throttles of least norm of a whole frame, or near by where a unit cannot give its efforts. True where
-    /// all can.
+    /// Writes the throttles of least norm of the rotors that turn, or near by where a unit cannot give its efforts. True
+    /// where all can. A single rotor has a torque that follows from its thrust, as has one whose partner is out.
     #[inline(always)]
-    pub(super) fn serve(&self, wrench: &[f32; 4], units: &mut [UnitState]) -> bool {
-        if S::MAY_HAVE_SINGLE_ROTORS {
-            self.serve_with_single_rotors(wrench, units)
-        } else {
+    pub(super) fn serve(&self, wrench: &[f32; 4], units: &mut [UnitState], is_whole: bool) -> bool {
+        if is_whole && !K::MAY_BE_SINGLE {
             self.serve_by_least_norm(wrench, units)
+        } else {
+            self.serve_with_rotors_alone(wrench, units, is_whole)
         }
-    }
-
-    /// [`Self::serve_by_least_norm`] with single rotors among the units.
-    #[inline(never)]
-    fn serve_with_single_rotors(&self, wrench: &[f32; 4], units: &mut [UnitState]) -> bool {
-        let (tables, range) = (self.tables, &self.tables.throttle);
-        let mut asked = *wrench;
-        for pass in rolled(0..tables.closed_form.passes()) {
-            let mut next = *wrench;
-            for (index, (state, unit)) in rolled(units.iter_mut().zip(tables.units).enumerate()) {
-                let Some(curve) = tables.curve_of(index) else {
-                    continue;
-                };
-                let [f, q] = self.least_norm(unit, &asked);
-                let from = if pass == 0 {
-                    curve.start(range, f)
-                } else {
-                    state.throttles[0]
-                };
-                let [throttle, torque] = curve.parabola(range, from, f);
-                state.throttles = [throttle, 0.0];
-                unit.add_wrench([0.0, q - torque], self.factors, &mut next);
-            }
-            asked = next;
-        }
-        let mut is_served = true;
-        for (index, (state, unit)) in rolled(units.iter_mut().zip(tables.units).enumerate()) {
-            state.efforts = self.least_norm(unit, &asked);
-            is_served &= match tables.curve_of(index) {
-                None => self.invert(index, state),
-                Some(curve) => {
-                    let given = curve.efforts(state.throttles[0]);
-                    state.efforts[1] = given[1];
-                    self.gives(given, state)
-                }
-            };
-        }
-        is_served
     }
 
     /// Writes the throttles of least norm, or near by where a unit cannot give its efforts. True where
@@ -106,7 +63,7 @@ impl<P: Quantity, I: Inverse, S: AllocationMethod<P>, const VERTICAL: bool> Fram
     #[inline(never)]
     pub(super) fn level(&self, thrust: f32, units: &mut [UnitState]) {
         let [least, most] = self.tables.level_n.map(|end| end * self.factors[0]);
-        if self.serve(&[0.0, 0.0, 0.0, clamp(thrust, least, most)], units) {
+        if self.serve(&[0.0, 0.0, 0.0, clamp(thrust, least, most)], units, true) {
             return;
         }
         for (index, state) in rolled(units.iter_mut().enumerate()) {

@@ -31,7 +31,7 @@ use super::closed_form::{AllocationMethod, ClosedForm, Efforts};
 use super::frame::Frame;
 use super::unit::UnitState;
 use crate::layout::Tables;
-use crate::pair::{Inverse, Quantity, solve};
+use crate::pair::{Kinds, solve};
 use crate::{divided, divisor, rolled, smaller};
 
 /// Share of the room that is used: the efforts are not quite linear over squares.
@@ -69,17 +69,17 @@ impl ClosedForm<'_> {
 /// [`ClosedForm::add_power_bias`] for any frame with all rotors, whose units are at the throttles of least
 /// norm for `wrench`. `factors` is `[k_f, k_Q]`.
 #[inline(never)]
-pub(crate) fn add_power_bias<P: Quantity, I: Inverse, S: AllocationMethod<P>>(
-    tables: &Tables<'_, P, I, S>,
+pub(crate) fn add_power_bias<K: Kinds, S: AllocationMethod>(
+    tables: &Tables<'_, K, S>,
     wrench: &[f32; 4],
     factors: [f32; 2],
     units: &mut [UnitState],
 ) {
     // No columns are used here, so the kind of axes makes no difference.
-    Frame::<_, _, _, true>::new(black_box(tables), factors).add_power_bias(wrench, units);
+    Frame::<_, _, true>::new(black_box(tables), factors).add_power_bias(wrench, units);
 }
 
-impl<P: Quantity, I: Inverse, S: AllocationMethod<P>, const VERTICAL: bool> Frame<'_, '_, P, I, S, VERTICAL> {
+impl<K: Kinds, S: AllocationMethod, const VERTICAL: bool> Frame<'_, '_, K, S, VERTICAL> {
     fn add_power_bias(&self, wrench: &[f32; 4], units: &mut [UnitState]) {
         let (tables, c) = (self.tables, self.tables.power_bias_nm_per_n);
         // What Q = c f would add to the wrench.
@@ -94,7 +94,10 @@ impl<P: Quantity, I: Inverse, S: AllocationMethod<P>, const VERTICAL: bool> Fram
             let [f, q] = self.least_norm(table, &added);
             let shift = [-f, c * unit.efforts[0] - q];
             unit.slopes[0] = shift;
-            let (_, jacobian) = tables.pair_of(index).efforts_and_jacobian(unit.throttles);
+            let Some(of) = tables.pair_of(index) else {
+                continue;
+            };
+            let (_, jacobian) = of.pair.efforts_and_jacobian(unit.throttles);
             for (throttle, step) in unit.throttles.iter().zip(solve(jacobian, shift)) {
                 let square = throttle * throttle;
                 let change = (2.0 * throttle * step).abs();

@@ -112,8 +112,8 @@ impl Request {
     /// The request `[roll, pitch, yaw, thrust]` (N m, N; bounded) for n units, `is_whole` where all rotors
     /// turn. `per_thrust` is 1 / k_f, `ratio` k_Q / k_f.
     #[inline(never)]
-    pub(super) fn new<P, I, S>(
-        tables: &Tables<'_, P, I, S>,
+    pub(super) fn new<K, S>(
+        tables: &Tables<'_, K, S>,
         wrench: &[f32; 4],
         n: f32,
         [per_thrust, ratio]: [f32; 2],

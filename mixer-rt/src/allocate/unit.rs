@@ -28,6 +28,11 @@ pub struct UnitState {
 }
 
 impl UnitState {
+    /// Throttles `[u, l]`.
+    pub fn throttles(&self) -> [f32; 2] {
+        self.throttles
+    }
+
     /// Stops the rotors that are out.
     #[inline(always)]
     pub(super) fn stop_failed(&mut self) {

@@ -1,37 +1,82 @@
-//! Units that differ on one frame: pairs of several kinds, and single rotors.
+//! What units give: all the same pair, or pairs of several kinds and single rotors.
 
-use super::forward::Pair;
-use super::single::SingleRotor;
+use super::alone::RotorAlone;
+use super::forward::{Pair, Quantity};
+use super::inverse::Inverse;
 
 /// What a pair of one kind gives.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Kind<P, I> {
+pub struct PairKind<P, I> {
     /// The forward map.
     pub pair: Pair<P>,
-    /// The upper and the lower rotor alone.
-    pub singles: [SingleRotor; 2],
+    /// Thrust and torque of the upper and of the lower rotor, the other one out.
+    pub alone: [RotorAlone; 2],
     /// The inverse map.
     pub inverse: I,
-    /// [`Tables::mean_square_slopes`](crate::tables::Tables::mean_square_slopes) of this kind.
+    /// Means over the throttles of f_u^2 + f_l^2 (N^2) and of Q_u^2 + Q_l^2 (N^2 m^2).
     pub mean_square_slopes: [f32; 2],
 }
 
-/// The kinds of a frame's units.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Unlike<'a, P, I> {
-    /// The kinds of pairs beside the tables' own.
-    pub kinds: &'a [Kind<P, I>],
-    /// The kind of each unit: an index into `kinds`, then of single rotors; beyond all of them the tables' own pair.
-    pub of: &'a [u8],
+/// The kinds of a frame's units, by [`Unit::kind`](crate::tables::Unit::kind). One pair alone is that of all units.
+pub trait Kinds {
+    /// The basis of the pairs.
+    type Quantity: Quantity;
+    /// The evaluator of their inverses.
+    type Inverse: Inverse;
+
+    /// Whether units may be single rotors: images of other frames leave out what serves them.
+    const MAY_BE_SINGLE: bool = false;
+
+    /// The pair of a kind; `None` of a single rotor.
+    fn pair(&self, kind: u8) -> Option<&PairKind<Self::Quantity, Self::Inverse>>;
+
+    /// What the upper (0) or the lower (1) rotor of a kind gives alone. A single rotor is an upper one.
+    fn alone(&self, kind: u8, side: usize) -> &RotorAlone;
 }
 
-/// [`Unlike`] on a frame with single rotors, which are units of one effort: their torque follows from their thrust.
+impl<P: Quantity, I: Inverse> Kinds for PairKind<P, I> {
+    type Quantity = P;
+    type Inverse = I;
+
+    #[inline(always)]
+    fn pair(&self, _kind: u8) -> Option<&PairKind<P, I>> {
+        Some(self)
+    }
+
+    #[inline(always)]
+    fn alone(&self, _kind: u8, side: usize) -> &RotorAlone {
+        &self.alone[side & 1]
+    }
+}
+
+/// Units that differ: kinds count the pairs, then the single rotors, which `SINGLE` says that there may be.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WithSingleRotors<'a, P, I> {
-    /// The kinds of pairs. `of` counts on past them for single rotors.
-    pub unlike: Unlike<'a, P, I>,
-    /// Thrust and torque of each kind of single rotor, twice: a unit has a row for its upper and for its lower rotor.
-    pub rotors: &'a [[SingleRotor; 2]],
-    /// Passes of least norm over them.
-    pub passes: u8,
+pub struct Unlike<'a, P, I, const SINGLE: bool> {
+    /// The kinds of pairs.
+    pub pairs: &'a [PairKind<P, I>],
+    /// The kinds of single rotors.
+    pub single_rotors: &'a [RotorAlone],
+}
+
+impl<P: Quantity, I: Inverse, const SINGLE: bool> Kinds for Unlike<'_, P, I, SINGLE> {
+    type Quantity = P;
+    type Inverse = I;
+
+    const MAY_BE_SINGLE: bool = SINGLE;
+
+    #[inline(always)]
+    fn pair(&self, kind: u8) -> Option<&PairKind<P, I>> {
+        self.pairs.get(usize::from(kind))
+    }
+
+    #[inline(always)]
+    fn alone(&self, kind: u8, side: usize) -> &RotorAlone {
+        match self.pair(kind) {
+            Some(pair) => &pair.alone[side & 1],
+            None => {
+                let place = usize::from(kind).wrapping_sub(self.pairs.len());
+                self.single_rotors.get(place).unwrap_or(&RotorAlone::NOTHING)
+            }
+        }
+    }
 }

@@ -1,7 +1,6 @@
-//! Which rotors of a unit turn, and what the unit then gives.
+//! Which rotors of a unit turn.
 
 use crate::Health;
-use crate::pair::{Expansion, Pair, Quantity, SingleRotor};
 
 /// Which rotors of a unit turn: the upper one, the lower one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,10 +16,22 @@ impl Rotors {
         Rotors(channels.map(|channel| !health.has_failed(channel)))
     }
 
+    /// All of a unit: both, or the upper one of a single rotor.
+    #[inline(always)]
+    pub(crate) fn all(is_single: bool) -> Self {
+        Rotors([true, !is_single])
+    }
+
     /// The upper one alone, if that.
     #[inline(always)]
     pub(crate) fn without_lower(self) -> Self {
         Rotors([self.0[0], false])
+    }
+
+    /// Whether the upper one turns, and the lower one.
+    #[inline(always)]
+    pub(crate) fn turning(self) -> [bool; 2] {
+        self.0
     }
 
     /// Whether one of them turns: 0 the upper, 1 the lower.
@@ -40,44 +51,5 @@ impl Rotors {
     pub(crate) fn single(self) -> Option<usize> {
         let [upper, lower] = self.0;
         (upper != lower).then_some(usize::from(lower))
-    }
-
-    /// The efforts `[f, Q]` (N, N m) of a unit with these rotors at `[u, l]`.
-    #[inline(always)]
-    pub(crate) fn efforts<P: Quantity>(
-        self,
-        pair: &Pair<P>,
-        [upper, lower]: &[SingleRotor; 2],
-        [u, l]: [f32; 2],
-    ) -> [f32; 2] {
-        match self.0 {
-            [true, true] => pair.efforts([u, l]),
-            [true, false] => upper.efforts(u),
-            [false, true] => lower.efforts(l),
-            [false, false] => [0.0; 2],
-        }
-    }
-
-    /// The same with the derivatives by the throttles of those that turn.
-    #[inline(always)]
-    pub(crate) fn expansion<P: Quantity>(
-        self,
-        pair: &Pair<P>,
-        [upper, lower]: &[SingleRotor; 2],
-        [u, l]: [f32; 2],
-    ) -> Expansion {
-        let (curve, throttle, side) = match self.0 {
-            [true, true] => return pair.expansion([u, l]),
-            [true, false] => (upper, u, 0),
-            [false, true] => (lower, l, 1),
-            [false, false] => return Expansion::NOTHING,
-        };
-        let [value, slope, curvature] = curve.expansion(throttle);
-        let mut expansion = Expansion {
-            value,
-            ..Expansion::NOTHING
-        };
-        (expansion.slopes[side], expansion.curvatures[side]) = (slope, curvature);
-        expansion
     }
 }

@@ -5,7 +5,7 @@
 
 use std::fmt::Debug;
 
-use mixer_rt::tables::{Airmode, Inverse, LawPiece, Pair, Priorities, Quantity, Tables, mix};
+use mixer_rt::tables::{Airmode, Kinds, LawPiece, Priorities, RotorAlone, Tables, mix};
 use mixer_rt::{Conditions, Health, Saturation, SetpointError, Wrench};
 
 #[rustfmt::skip]
@@ -90,30 +90,26 @@ pub struct Answer {
 pub struct Frame {
     pub name: &'static str,
     /// Tables but for the pair, the inverse and the closed form. Priorities and the power bias may be changed.
-    pub tables: Tables<'static, (), (), ()>,
+    pub tables: Tables<'static, (), ()>,
     /// Coefficients of thrust and torque of a pair, and the products of throttles that they are of.
     pair: [Vec<f32>; 2],
     terms: &'static str,
+    /// What the upper and the lower rotor of a pair give alone.
+    alone: [RotorAlone; 2],
     mix: fn(Priorities, f32, &Request) -> Result<Answer, SetpointError>,
     /// Throttles for efforts, and the efforts that they give.
     invert: fn([f32; 2]) -> [[f32; 2]; 2],
 }
 
 /// `tables` without those whose types differ between frames.
-fn common<P, I, S>(tables: &Tables<'static, P, I, S>) -> Tables<'static, (), (), ()> {
+fn common<K, S>(tables: &Tables<'static, K, S>) -> Tables<'static, (), ()> {
     Tables {
         units: tables.units,
-        pair: Pair {
-            thrust: (),
-            torque: (),
-        },
-        singles: tables.singles,
-        inverse: (),
+        kinds: (),
         throttle: tables.throttle,
         voltage: tables.voltage,
         air: tables.air,
         row_scale: tables.row_scale,
-        mean_square_slopes: tables.mean_square_slopes,
         level_n: tables.level_n,
         is_vertical: tables.is_vertical,
         priorities: tables.priorities,
@@ -123,9 +119,9 @@ fn common<P, I, S>(tables: &Tables<'static, P, I, S>) -> Tables<'static, (), (),
     }
 }
 
-fn invert<P: Quantity, I: Inverse, S>(tables: &Tables<'_, P, I, S>, efforts: [f32; 2]) -> [[f32; 2]; 2] {
-    let throttles = tables.inverse.throttles(&tables.pair, &tables.throttle, efforts);
-    [throttles, tables.pair.efforts(throttles)]
+fn invert<K: Kinds, S>(tables: &Tables<'_, K, S>, efforts: [f32; 2]) -> [[f32; 2]; 2] {
+    let throttles = tables.throttles_of(0, efforts);
+    [throttles, tables.efforts_of(0, throttles)]
 }
 
 macro_rules! frame {
@@ -134,8 +130,9 @@ macro_rules! frame {
         Frame {
             name: stringify!($module),
             tables: common(&TABLES),
-            pair: [TABLES.pair.thrust, TABLES.pair.torque].map(|quantity| quantity.0.to_vec()),
+            pair: [TABLES.kinds.pair.thrust, TABLES.kinds.pair.torque].map(|quantity| quantity.0.to_vec()),
             terms: $terms,
+            alone: TABLES.kinds.alone,
             mix: |priorities, power_bias_nm_per_n, request| {
                 let tables = Tables {
                     priorities,
@@ -144,7 +141,7 @@ macro_rules! frame {
                 };
                 let wrench = Wrench::from_array(request.wrench);
                 let (conditions, health) = (request.conditions(), request.health);
-                let mix = mix::<UNITS, CHANNELS, _, _, _>(&tables, &wrench, conditions, health)?;
+                let mix = mix::<UNITS, CHANNELS, _, _>(&tables, &wrench, conditions, health)?;
                 Ok(Answer {
                     throttle: mix.throttle.to_vec(),
                     achieved: mix.achieved.to_array(),
@@ -299,7 +296,7 @@ impl Frame {
                 [true, true] => sum(&self.pair[row], self.terms, throttles),
                 [false, false] => 0.0,
                 [upper, _] => {
-                    let rotor = &self.tables.singles[usize::from(!upper)];
+                    let rotor = &self.alone[usize::from(!upper)];
                     let coefficients = [&rotor.thrust, &rotor.torque][row];
                     sum(
                         coefficients,

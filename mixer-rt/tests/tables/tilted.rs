@@ -12,20 +12,32 @@
 /// * unit 5 at (0.4330127, -0.25, 0.0) m, upper rotor cw: channel 5 upper, 11 lower
 ///
 /// Inverse map: polynomial of degree 2 in root coordinates, one Newton step.
-/// Proven: each unit's thrust and torque are within 0.00236 N and 3.5e-5 N m of what is asked, at every
-/// voltage and density and everywhere in the attainable set, rounding in f32 included (261 cells).
+/// Proven: each unit's thrust and torque are within 0.00245 N and 3.46e-5 N m of what is asked, at every
+/// voltage and density and everywhere in the attainable set, rounding in f32 included (447 cells).
 /// Largest residual observed over 5251 efforts at the reference voltage: 0.00148 N, 2.1e-5 N m.
 #[allow(dead_code, unreachable_pub)]
 pub mod tilted {
     use ::mixer_rt::{self as rt, tables};
     const _: () = ::core::assert!(
-        tables::FORMAT == 1u32,
+        tables::FORMAT == 2u32,
         "generated for another version of mixer-rt: use mixer-compiler or mixer-macros of its version, and generate the file anew"
     );
     /// Number of coaxial units.
     pub const UNITS: usize = 6;
     /// Number of output channels, two per unit.
     pub const CHANNELS: usize = 12;
+    /// Least throttle of a rotor that is not out: the idle.
+    pub const THROTTLE_MIN: f32 = 0.07;
+    /// Largest throttle.
+    pub const THROTTLE_MAX: f32 = 0.95;
+    /// The least voltage of `range_v`, V: below it the voltage is clamped and flagged. 0 where it is ignored.
+    pub const MIN_V: f32 = 9.0;
+    /// The highest voltage of `range_v`, V, likewise.
+    pub const MAX_V: f32 = 12.6;
+    /// Voltage of the bench, V: what to pass before one is measured. 0 where it is ignored.
+    pub const REFERENCE_V: f32 = 11.0;
+    /// Density of the bench's air, kg/m^3: what to pass before one is measured. 0 where it is ignored.
+    pub const REFERENCE_DENSITY_KG_M3: f32 = 1.2;
     /// What one unit of PX4's normalised setpoints asks for: see
     /// `mixer_rt::Wrench::from_normalised`.
     pub const SCALE: rt::Wrench = rt::Wrench {
@@ -93,7 +105,6 @@ pub mod tilted {
             CHANNELS,
             _,
             _,
-            _,
         >(&TABLES, setpoint, conditions.into(), rt::Health::GOOD)
     }
     /// [`mix`] with the rotors out that `health` names by channel.
@@ -111,7 +122,6 @@ pub mod tilted {
             CHANNELS,
             _,
             _,
-            _,
         >(&TABLES, setpoint, conditions.into(), health)
     }
     /// The units: rows of M+, columns of M, output channels.
@@ -126,6 +136,7 @@ pub mod tilted {
                 [0.06958655, -0.12052744, -0.99026805, 0.0],
             ],
             channels: [0, 6],
+            kind: 0,
         },
         tables::Unit {
             allocation: [
@@ -137,6 +148,7 @@ pub mod tilted {
                 [0.1391731, 0.0, 0.99026805, 0.0],
             ],
             channels: [1, 7],
+            kind: 0,
         },
         tables::Unit {
             allocation: [
@@ -148,6 +160,7 @@ pub mod tilted {
                 [0.06958655, 0.12052744, -0.99026805, 0.0],
             ],
             channels: [2, 8],
+            kind: 0,
         },
         tables::Unit {
             allocation: [
@@ -159,6 +172,7 @@ pub mod tilted {
                 [-0.06958655, 0.12052744, 0.99026805, 0.0],
             ],
             channels: [3, 9],
+            kind: 0,
         },
         tables::Unit {
             allocation: [
@@ -170,6 +184,7 @@ pub mod tilted {
                 [-0.1391731, 0.0, -0.99026805, 0.0],
             ],
             channels: [4, 10],
+            kind: 0,
         },
         tables::Unit {
             allocation: [
@@ -181,66 +196,69 @@ pub mod tilted {
                 [-0.06958655, -0.12052744, 0.99026805, 0.0],
             ],
             channels: [5, 11],
+            kind: 0,
         },
     ];
-    /// The forward map of a unit: thrust and torque as polynomials of both throttles.
-    const PAIR: tables::Pair<tables::Cubic> = tables::Pair {
-        thrust: tables::Cubic([
-            -1.568439,
-            -3.705443,
-            4.290864,
-            -0.2664861,
-            10.38016,
-            -2.598064,
-            6.913037,
-            2.109963,
-            4.025217,
-        ]),
-        torque: tables::Cubic([
-            0.009379736,
-            -0.03749241,
-            0.04187819,
-            -0.02220356,
-            -0.1813082,
-            0.01354701,
-            0.1624532,
-            -0.06034118,
-            0.04840858,
-        ]),
-    };
-    /// Thrust and torque of the upper and of the lower rotor alone.
-    const ROTORS_ALONE: [tables::SingleRotor; 2] = [
-        tables::SingleRotor {
-            thrust: [0.0, -1.568439, 10.38016, 2.109963],
-            torque: [0.0, 0.009379736, -0.1813082, -0.06034118],
+    type Kinds = tables::PairKind<tables::Cubic, tables::PolynomialInverse<[f32; 6], 1>>;
+    /// What the units give: forward maps, rotors alone, inverse maps.
+    const KINDS: Kinds = tables::PairKind {
+        pair: tables::Pair {
+            thrust: tables::Cubic([
+                -1.568439,
+                -3.705443,
+                4.290864,
+                -0.2664861,
+                10.38016,
+                -2.598064,
+                6.913037,
+                2.109963,
+                4.025217,
+            ]),
+            torque: tables::Cubic([
+                0.009379736,
+                -0.03749241,
+                0.04187819,
+                -0.02220356,
+                -0.1813082,
+                0.01354701,
+                0.1624532,
+                -0.06034118,
+                0.04840858,
+            ]),
         },
-        tables::SingleRotor {
-            thrust: [0.0, -0.2664861, 6.913037, 4.025217],
-            torque: [0.0, -0.02220356, 0.1624532, 0.04840858],
+        alone: [
+            tables::RotorAlone {
+                thrust: [0.0, -1.568439, 10.38016, 2.109963],
+                torque: [0.0, 0.009379736, -0.1813082, -0.06034118],
+            },
+            tables::RotorAlone {
+                thrust: [0.0, -0.2664861, 6.913037, 4.025217],
+                torque: [0.0, -0.02220356, 0.1624532, 0.04840858],
+            },
+        ],
+        inverse: tables::PolynomialInverse {
+            forms: [
+                [0.055495482, -3.066655, 0.04458168],
+                [0.055495482, 2.6901805, 0.02081367],
+            ],
+            upper: [
+                -0.06907385,
+                0.085885495,
+                1.1400874,
+                0.0073161917,
+                -0.02649386,
+                -0.24304731,
+            ],
+            lower: [
+                0.17967688,
+                -0.06505051,
+                -0.082997896,
+                0.011196064,
+                1.0787277,
+                -0.15085563,
+            ],
         },
-    ];
-    /// The inverse map of a unit.
-    const INVERSE: tables::PolynomialInverse<[f32; 6], 1> = tables::PolynomialInverse {
-        forms: [
-            [0.055495482, -3.066655, 0.04458168],
-            [0.055495482, 2.6901805, 0.02081367],
-        ],
-        upper: [
-            -0.06907385,
-            0.085885495,
-            1.1400874,
-            0.0073161917,
-            -0.02649386,
-            -0.24304731,
-        ],
-        lower: [
-            0.17967688,
-            -0.06505051,
-            -0.082997896,
-            0.011196064,
-            1.0787277,
-            -0.15085563,
-        ],
+        mean_square_slopes: [227.60522, 0.11379245],
     };
     /// How thrust and torque follow the battery's voltage, V.
     const VOLTAGE: ::core::option::Option<tables::Law<'static>> = ::core::option::Option::Some(tables::Law {
@@ -281,16 +299,9 @@ pub mod tilted {
     const CLOSED_FORM: tables::NoClosedForm = tables::NoClosedForm;
     /// All tables; see `mixer_rt::tables` for their meaning and units.
     #[doc(hidden)]
-    pub static TABLES: tables::Tables<
-        'static,
-        tables::Cubic,
-        tables::PolynomialInverse<[f32; 6], 1>,
-        tables::NoClosedForm,
-    > = tables::Tables {
+    pub static TABLES: tables::Tables<'static, Kinds, tables::NoClosedForm> = tables::Tables {
         units: &UNIT_TABLES,
-        pair: PAIR,
-        singles: ROTORS_ALONE,
-        inverse: INVERSE,
+        kinds: KINDS,
         throttle: tables::ThrottleRange {
             min: 0.07,
             max: 0.95,
@@ -298,8 +309,7 @@ pub mod tilted {
         voltage: VOLTAGE,
         air: AIR,
         row_scale: [0.16757365, 0.19349739, 0.68405133, 0.05604087],
-        mean_square_slopes: [227.60522, 0.11379245],
-        level_n: [3.3005285, 102.693695],
+        level_n: [3.300705, 102.69356],
         is_vertical: false,
         priorities: tables::Priorities {
             airmode: tables::Airmode::RollPitch,
@@ -308,8 +318,8 @@ pub mod tilted {
         power_bias_nm_per_n: 0.0,
         closed_form: CLOSED_FORM,
         tolerance: tables::Tolerance {
-            efforts: [0.0018609652, 0.000028876659],
-            wrench: [0.004880813, 0.004226908, 0.0012393987, 0.014582088],
+            efforts: [0.0019248438, 0.00002859433],
+            wrench: [0.0050607156, 0.004382708, 0.0012750609, 0.015122445],
         },
     };
 }

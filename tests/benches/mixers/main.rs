@@ -29,10 +29,7 @@ const REQUESTS: usize = 256;
 
 type Asked = Vec<(Wrench, f32)>;
 
-fn asked<P: Quantity, I: Inverse, S: AllocationMethod<P>>(
-    tables: &Tables<'_, P, I, S>,
-    kind: RequestKind,
-) -> Asked {
+fn asked<K: Kinds, S: AllocationMethod>(tables: &Tables<'_, K, S>, kind: RequestKind) -> Asked {
     Requests::new(tables, kind, 8)
         .take(REQUESTS)
         .map(|request| (Wrench::from_array(request.wrench), request.voltage_v))

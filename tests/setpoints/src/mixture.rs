@@ -2,7 +2,7 @@
 
 use mixer_rt::{
     Saturation, SetpointError, Wrench,
-    tables::{AllocationMethod, Inverse, Quantity, Tables},
+    tables::{AllocationMethod, Kinds, Tables},
 };
 
 use crate::{Digest, Ranges, RequestKind, Requests, Setpoint, Setpoints};
@@ -10,16 +10,16 @@ use crate::{Digest, Ranges, RequestKind, Requests, Setpoint, Setpoints};
 /// Endless sequence: attainable requests, saturated ones, and setpoints that may not be finite, in
 /// turn.
 #[derive(Clone, Debug)]
-pub struct Mixture<'a, P, I, S> {
-    attainable: Requests<'a, P, I, S>,
-    saturated: Requests<'a, P, I, S>,
+pub struct Mixture<'a, K, S> {
+    attainable: Requests<'a, K, S>,
+    saturated: Requests<'a, K, S>,
     anything: Setpoints,
     index: u32,
 }
 
-impl<'a, P: Quantity, I: Inverse, S: AllocationMethod<P>> Mixture<'a, P, I, S> {
+impl<'a, K: Kinds, S: AllocationMethod> Mixture<'a, K, S> {
     /// The sequence of one seed for the mixer of `tables`.
-    pub fn new(tables: &'a Tables<'a, P, I, S>, seed: u64) -> Self {
+    pub fn new(tables: &'a Tables<'a, K, S>, seed: u64) -> Self {
         let attainable = Requests::new(tables, RequestKind::Attainable, seed);
         let [roll, pitch, yaw, thrust] = attainable.authority();
         let [low, high] = tables
@@ -44,7 +44,7 @@ impl<'a, P: Quantity, I: Inverse, S: AllocationMethod<P>> Mixture<'a, P, I, S> {
     }
 }
 
-impl<P: Quantity, I: Inverse, S: AllocationMethod<P>> Iterator for Mixture<'_, P, I, S> {
+impl<K: Kinds, S: AllocationMethod> Iterator for Mixture<'_, K, S> {
     type Item = Setpoint;
 
     fn next(&mut self) -> Option<Setpoint> {

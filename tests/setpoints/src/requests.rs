@@ -1,6 +1,6 @@
 //! Requests to one airframe's mixer, drawn around what it can deliver.
 
-use mixer_rt::tables::{AllocationMethod, Inverse, Law, Quantity, Tables, ThrottleRange};
+use mixer_rt::tables::{AllocationMethod, Kinds, Law, Tables, ThrottleRange};
 
 use mixer_rt::Conditions;
 
@@ -20,10 +20,10 @@ pub enum RequestKind {
 
 /// Endless sequence of requests to the mixer of `tables`.
 #[derive(Clone, Debug)]
-pub struct Requests<'a, P, I, S> {
+pub struct Requests<'a, K, S> {
     random: Random,
     kind: RequestKind,
-    tables: &'a Tables<'a, P, I, S>,
+    tables: &'a Tables<'a, K, S>,
     throttle: ThrottleRange,
     voltage: Option<&'a Law<'a>>,
     air: Option<&'a Law<'a>>,
@@ -32,9 +32,9 @@ pub struct Requests<'a, P, I, S> {
     authority: [f32; 4],
 }
 
-impl<'a, P: Quantity, I: Inverse, S: AllocationMethod<P>> Requests<'a, P, I, S> {
+impl<'a, K: Kinds, S: AllocationMethod> Requests<'a, K, S> {
     /// The sequence of one seed.
-    pub fn new(tables: &'a Tables<'a, P, I, S>, kind: RequestKind, seed: u64) -> Self {
+    pub fn new(tables: &'a Tables<'a, K, S>, kind: RequestKind, seed: u64) -> Self {
         let ThrottleRange { min, max } = tables.throttle;
         let mut authority = [0.0; 4];
         for (index, unit) in tables.units.iter().enumerate() {
@@ -197,7 +197,7 @@ impl<'a, P: Quantity, I: Inverse, S: AllocationMethod<P>> Requests<'a, P, I, S> 
     }
 }
 
-impl<P: Quantity, I: Inverse, S: AllocationMethod<P>> Iterator for Requests<'_, P, I, S> {
+impl<K: Kinds, S: AllocationMethod> Iterator for Requests<'_, K, S> {
     type Item = Setpoint;
 
     fn next(&mut self) -> Option<Setpoint> {

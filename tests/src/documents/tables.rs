@@ -178,10 +178,13 @@ pub(super) fn accuracy() -> Result<String, String> {
         .iter()
         .map(|name| {
             let compiled = golden::compile(name)?;
-            let (proven, observed) = (compiled.certificate.stated, compiled.residual.efforts);
+            let (proven, observed) = (
+                compiled.of_pairs[0].certificate.stated,
+                compiled.of_pairs[0].residual.efforts,
+            );
             Ok(vec![
                 name.clone(),
-                compiled.evaluator.name().to_owned(),
+                compiled.of_pairs[0].evaluator.name().to_owned(),
                 rounded_up(proven[0]),
                 rounded_up(observed[0]),
                 rounded_up(proven[1]),

@@ -51,7 +51,8 @@ impl Pair {
     /// # Errors
     /// The file's faults.
     pub fn of_airframe(source: &Source) -> Result<Pair, String> {
-        let Airframe { pair, throttle, .. } = Airframe::read(source).map_err(|faults| faults.to_string())?;
+        let Airframe { pairs, throttle, .. } = Airframe::read(source).map_err(|faults| faults.to_string())?;
+        let pair = pairs.first().ok_or("no pair")?;
         let alone = pair.lower_out.as_ref().zip(pair.upper_out.as_ref());
         Ok(Pair {
             basis: pair.basis,

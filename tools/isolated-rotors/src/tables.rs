@@ -8,10 +8,10 @@
 
 use mixer_compiler::Compiled;
 use mixer_compiler::airframe::Airframe;
-use mixer_compiler::model::PairMap;
 use mixer_compiler::model::effectiveness::Effectiveness;
 use mixer_compiler::model::law::LawTable;
 use mixer_compiler::model::pseudo_inverse::PseudoInverse;
+use mixer_compiler::model::{self, PairMap};
 use mixer_compiler::tables;
 use mixer_rt::tables::{Airmode, ThrottleRange};
 use mixer_rt::{SetpointError, Wrench};
@@ -60,8 +60,7 @@ impl IsolatedTables {
     /// The tables of `airframe` with effectiveness M.
     pub fn of(airframe: &Airframe, effectiveness: &Effectiveness, voltage: Option<LawTable>) -> Self {
         // Where units differ, all rotors are those of the mean pair.
-        let airframe = &airframe.with_mean_pair();
-        let map = PairMap::new(&airframe.pair, &airframe.throttle);
+        let map = model::mean(airframe, &model::maps(airframe));
         let kappa_m = torque_per_thrust(&map);
         let columns = rotor_columns(airframe, effectiveness, kappa_m);
         let allocation = pseudo_inverse(airframe, &columns);
@@ -76,7 +75,7 @@ impl IsolatedTables {
         let [low, high] = map.range().map(|throttle| map.efforts([throttle, 0.0])[0] as f32);
         IsolatedTables {
             rotors: rotors.collect(),
-            curve: curve(airframe),
+            curve: curve(&map),
             thrust_n: [low, high],
             throttle: tables::throttle_table(airframe),
             voltage,
@@ -146,10 +145,10 @@ fn rotor_columns(airframe: &Airframe, effectiveness: &Effectiveness, kappa_m: f6
             let axis = *axis as usize;
             let by_thrust = effectiveness.matrix[(axis, i)];
             let by_torque = kappa_m * effectiveness.matrix[(axis, n + i)];
+            // The torque of a single rotor counts positive, that of an upper one negative.
+            let last = unit.lower_channel.unwrap_or(unit.upper_channel);
             columns[(axis, unit.upper_channel)] = by_thrust - by_torque;
-            if let Some(lower) = unit.lower_channel {
-                columns[(axis, lower)] = by_thrust + by_torque;
-            }
+            columns[(axis, last)] = by_thrust + by_torque;
         }
     }
     columns
@@ -192,16 +191,9 @@ fn desaturation_scale(allocation: &DMatrix<f64>) -> [f64; 4] {
     [roll_pitch, roll_pitch, yaw, thrust].map(|scale| if scale > 0.0 { scale } else { 1.0 })
 }
 
-/// f(d, 0) from the pair's terms in u alone.
-fn curve(airframe: &Airframe) -> ThrustCurve {
-    let pair = &airframe.pair;
-    let mut coefficients = [0.0; 4];
-    for (&(u, l), &c) in pair.basis.exponents().iter().zip(&pair.thrust_n) {
-        if l == 0 && (1..=4).contains(&u) {
-            coefficients[4 - usize::from(u)] = c;
-        }
-    }
-    match coefficients {
+/// f(d, 0) from the terms in u alone.
+fn curve(map: &PairMap) -> ThrustCurve {
+    match map.along(0).map(|[f, _]| f) {
         [0.0, 0.0, a, b] if a > 0.0 => ThrustCurve::Parabola {
             per_n: (1.0 / a) as f32,
             shift: (0.5 * b / a) as f32,

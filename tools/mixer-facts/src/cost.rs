@@ -10,6 +10,14 @@ mod typical;
 use serde::Serialize;
 
 use mixer_compiler::Compiled;
+use mixer_compiler::airframe::Basis;
+use mixer_compiler::evaluator::Evaluator;
+
+/// How pairs are inverted; `None` where no unit is one.
+fn inverse(compiled: &Compiled) -> Option<(Evaluator, Basis)> {
+    let evaluator = compiled.of_pairs.first()?.evaluator;
+    Some((evaluator, compiled.airframe.pairs.first()?.basis))
+}
 
 /// What counts are of.
 pub const TARGET: &str = "Cortex-M4F, counted in QEMU";
@@ -52,13 +60,13 @@ pub struct Cost {
 impl Cost {
     /// The cost of a compiled airframe.
     pub fn new(compiled: &Compiled) -> Self {
-        let basis = compiled.airframe.pair.basis;
-        let pairs = compiled.airframe.units.len() - compiled.airframe.single_units();
+        let pairs = compiled.airframe.pair_units();
         let delivered = typical::delivered(compiled);
         let attainable = typical::attainable(compiled);
         let all = |one: Option<u32>| one.map(|one| one * pairs as u32);
-        let inverse_instructions = compiled.evaluator.instructions(basis);
-        let inverse_cycles = compiled.evaluator.cost(basis);
+        let inverse = inverse(compiled);
+        let inverse_instructions = inverse.and_then(|(evaluator, basis)| evaluator.instructions(basis));
+        let inverse_cycles = inverse.and_then(|(evaluator, basis)| evaluator.cost(basis));
         Cost {
             target: TARGET,
             inverse_instructions,

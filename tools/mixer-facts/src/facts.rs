@@ -3,11 +3,12 @@
 use std::fmt;
 
 use mixer_compiler::Compiled;
-use mixer_compiler::airframe::Airframe;
+use mixer_compiler::airframe::{Kind, Uncertainty};
 use mixer_compiler::atmosphere::TOP_M;
 use mixer_compiler::diagnostic::rounded_up;
 use mixer_compiler::flywheel::Flywheel;
 use mixer_compiler::hover::HoverAt;
+use mixer_compiler::model::PairMap;
 use mixer_compiler::power::LevelPower;
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -181,7 +182,7 @@ fn gives(list: &mut List, compiled: &Compiled) {
         .into_iter()
         .zip(&airframe.units);
     let frame: Vec<String> = frame
-        .map(|(told, unit)| told + &airframe.named_pair(unit))
+        .map(|(told, unit)| told + &airframe.named_kind(unit))
         .collect();
     let lines: Vec<String> = frame.chunks(UNITS_A_LINE).map(|units| units.join("; ")).collect();
     list.say("frame", "", "", lines.join(&format!(";\n{:20}", "")))
@@ -203,18 +204,20 @@ fn gives(list: &mut List, compiled: &Compiled) {
         .json("thrust_range_n", [floor, ceiling])
         .in_verdict();
     let throttle = format!("{:?} to {:?}", airframe.throttle.min, airframe.throttle.max);
-    let (share, needed) = (100.0 * floor / ceiling, (1e3 * compiled.least_idle).ceil() / 1e3);
-    let mut of_pairs = compiled.of_each_pair().into_iter();
-    let needs_most = of_pairs.find(|of_pair| of_pair.least_idle == compiled.least_idle);
-    let whose = or_nothing(needs_most.filter(|_| airframe.pairs().count() > 1), |of_pair| {
-        format!(" of pair \"{}\"", of_pair.airframe.pair.name)
-    });
-    let needed = or_nothing(Some(needed).filter(|_| airframe.has_pairs()), |needed| {
+    let share = 100.0 * floor / ceiling;
+    let needs_most = airframe.pairs.iter().zip(&compiled.of_pairs);
+    let needs_most = needs_most.max_by(|(_, a), (_, b)| a.least_idle.total_cmp(&b.least_idle));
+    let needed = or_nothing(needs_most, |(pair, of)| {
+        let whose = match airframe.pairs.len() {
+            1 => String::new(),
+            _ => format!(" of pair \"{}\"", pair.name),
+        };
+        let needed = (1e3 * of.least_idle).ceil() / 1e3;
         format!(", the map{whose} needs {needed:.3} at least")
     });
     let words = format!("; idle gives {share:.1} % of the largest thrust{needed}");
     list.say("throttle", throttle, "", words)
-        .json("min_idle", compiled.least_idle)
+        .json("min_idle", needs_most.map(|(_, of)| of.least_idle))
         .in_verdict();
 
     for margin in HoverAt::new(compiled, SHARE * ceiling, reference_v).margins {
@@ -240,8 +243,7 @@ fn layer([least, greatest]: [f64; 2], [lowest, highest]: [usize; 2]) -> String {
 /// The vehicle in hover.
 fn hover(list: &mut List, compiled: &Compiled) {
     let hover = Hover::new(compiled);
-    let of_pairs = compiled.airframe.of_each_pair();
-    let flywheels: Vec<Option<Flywheel>> = of_pairs.iter().map(Flywheel::of).collect();
+    let flywheels = Flywheel::of(&compiled.airframe);
     let missing = "add [vehicle] mass_kg to see hover and its margins";
     match &hover {
         None => list.say("mass", "", "", missing),
@@ -254,7 +256,7 @@ fn hover(list: &mut List, compiled: &Compiled) {
     .json("flywheel", one_or_list(&flywheels))
     .in_verdict();
     let Some(hover) = hover else { return };
-    let of_rotors = of_pairs.iter().zip(&flywheels).filter_map(|(airframe, rotor)| {
+    let of_rotors = compiled.airframe.views().zip(&flywheels).filter_map(|(view, rotor)| {
         let rotor = rotor.as_ref()?;
         let source = or_nothing(rotor.estimated_diameter_m, |diameter_m| {
             format!(", estimated by the largest thrust: {diameter_m:.2} m")
@@ -263,7 +265,7 @@ fn hover(list: &mut List, compiled: &Compiled) {
             "T = J w / (2 Q) of {:.2} s in hover (J {:.1e} kg m2{source}): a step of yaw begins with {:.1} times its steady torque",
             rotor.lead_s, rotor.inertia_kg_m2, rotor.first_over_steady
         );
-        Some(of_pair(airframe, of_pairs.len()) + &words)
+        Some(whose(view.of, flywheels.len()) + &words)
     });
     let of_rotors: Vec<String> = of_rotors.collect();
     if !of_rotors.is_empty() {
@@ -275,11 +277,12 @@ fn hover(list: &mut List, compiled: &Compiled) {
         .in_verdict();
     for (at, name) in hover.at.iter().rev().zip(["hover", "hover, lowest V"]) {
         let volts = or_nothing(at.voltage_v, |volts| format!(" at {volts:?} V"));
-        let Some(layers) = at.layers() else {
+        let layers = at.layers();
+        if layers.is_empty() {
             let words = format!("the weight is not carried{volts}");
             list.say(name, "", "", words).in_verdict();
             continue;
-        };
+        }
         let left = at.margins.iter().map(|margin| {
             let [least, largest] = margin.torque_nm;
             let band = or_nothing(margin.band_nm, |band| format!(" +- {band:.3}"));
@@ -288,13 +291,28 @@ fn hover(list: &mut List, compiled: &Compiled) {
         let left: Vec<String> = left.collect();
         let left = Some(left.join(", ")).filter(|left| !left.is_empty());
         let left = or_nothing(left, |left| format!("; left (N m): {left}"));
-        let band = or_nothing(at.throttle_band, |[[low_u, low_l], [u, l]]| {
-            format!("; by [pair.uncertainty] {low_u:.3} to {u:.3} upper, {low_l:.3} to {l:.3} lower")
+        let band = or_nothing(at.throttle_band.as_ref(), |[least, most]| {
+            let ends = least.iter().zip(most).zip([" upper", " lower"]);
+            let ends = ends.map(|((least, most), name)| {
+                format!(
+                    "{least:.3} to {most:.3}{}",
+                    if layers.len() > 1 { name } else { "" }
+                )
+            });
+            let table = if layers.len() > 1 { "pair" } else { "rotor" };
+            format!(
+                "; by [{table}.uncertainty] {}",
+                ends.collect::<Vec<_>>().join(", ")
+            )
         });
-        let [upper, lower] = layers.map(|(throttle, outputs)| layer(throttle, outputs));
-        let (throttle, whose) = match compiled.airframe.has_pairs() {
-            true => (format!("{upper}, {lower}"), " of upper, lower rotors"),
-            false => (upper, ""),
+        let throttle = layers
+            .iter()
+            .map(|(throttle, outputs)| layer(*throttle, *outputs));
+        let throttle = throttle.collect::<Vec<_>>().join(", ");
+        let whose = if layers.len() > 1 {
+            " of upper, lower rotors"
+        } else {
+            ""
         };
         let words = format!(" throttle{whose}{volts}{left}{band}");
         list.say(name, throttle, "", words).in_verdict();
@@ -335,10 +353,9 @@ fn power(list: &mut List, compiled: &Compiled) {
             format!("by the pair's polynomials, extrapolated from {idle:?} to 0"),
         ),
     };
-    let mut pairs = airframe.of_each_pair();
-    pairs.retain(|_| airframe.has_pairs());
-    let told = pairs.iter().map(|of| {
-        let [lower, upper] = [&of.pair.lower_out, &of.pair.upper_out].map(|out| source(out.is_some()));
+    let kinds = airframe.views().count();
+    let told = airframe.pair_views().map(|view| {
+        let [lower, upper] = [&view.of.lower_out, &view.of.upper_out].map(|out| source(out.is_some()));
         let words = match (&lower.1, &upper.1) {
             (lower, upper) if lower == upper => format!("the other one {lower}"),
             (lower, upper) => {
@@ -346,7 +363,7 @@ fn power(list: &mut List, compiled: &Compiled) {
             }
         };
         let json = json!({ "lower_out": lower.0, "upper_out": upper.0 });
-        (of_pair(of, pairs.len()) + &words, json)
+        (whose(Kind::Pair(view.of), kinds) + &words, json)
     });
     let (words, json): (Vec<String>, Vec<Value>) = told.unzip();
     list.say("rotor out", "", "", words.join("; "))
@@ -386,11 +403,11 @@ fn power(list: &mut List, compiled: &Compiled) {
         .in_verdict();
 }
 
-/// What is said of a pair, after whose it is where units differ.
-fn of_pair(airframe: &Airframe, pairs: usize) -> String {
-    match pairs {
+/// Whose it is what is said of a kind, where there are several.
+fn whose(kind: Kind<'_>, kinds: usize) -> String {
+    match kinds {
         1 => String::new(),
-        _ => format!("\"{}\" ", airframe.pair.name),
+        _ => format!("\"{}\" ", kind.name().1),
     }
 }
 
@@ -404,41 +421,33 @@ fn one_or_list<T: Serialize>(values: &[T]) -> Value {
 }
 
 impl List {
-    /// Says value and words of each pair.
+    /// Says value and words of each kind.
     fn say_of_each(
         &mut self,
         name: &'static str,
         unit: &'static str,
-        each: &[(Compiled, String, String)],
+        kinds: usize,
+        each: &[(Kind<'_>, String, String)],
     ) -> &mut Fact {
-        match each {
-            [(_, value, words)] => return self.say(name, value, unit, words.as_str()),
-            [] => return self.say(name, "none", "", ""),
-            _ => {}
+        if let ([(_, value, words)], 1) = (each, kinds) {
+            return self.say(name, value, unit, words.as_str());
         }
         let told = each.iter().map(|(of, value, words)| {
             let space = if unit.is_empty() { "" } else { " " };
-            format!("{}{value}{space}{unit}{words}", of_pair(&of.airframe, each.len()))
+            format!("{}{value}{space}{unit}{words}", whose(*of, kinds))
         });
         let told: Vec<String> = told.collect();
         self.say(name, "", "", told.join("; "))
     }
 }
 
-/// The pairs' maps.
+/// The units' maps.
 fn model(list: &mut List, compiled: &Compiled) {
-    let mut pairs = compiled.of_each_pair();
-    pairs.retain(|_| compiled.airframe.has_pairs());
-    let each = |told: &dyn Fn(&Compiled) -> (String, String)| -> Vec<(Compiled, String, String)> {
-        let of = |compiled: &Compiled| {
-            let (value, words) = told(compiled);
-            (compiled.clone(), value, words)
-        };
-        pairs.iter().map(of).collect()
-    };
-    let told = each(&|compiled| {
-        let pair = &compiled.airframe.pair;
-        let of_uncertainty = or_nothing(pair.uncertainty.as_ref(), |uncertainty| {
+    let airframe = &compiled.airframe;
+    let kinds: Vec<Kind<'_>> = airframe.views().map(|view| view.of).collect();
+    let pairs = airframe.pairs.iter().zip(&compiled.of_pairs);
+    let told = kinds.iter().map(|kind| {
+        let of_uncertainty = or_nothing(kind.uncertainty(), |uncertainty| {
             format!(
                 ", {}: +- {} % of the largest thrust, {} % of the largest torque (one standard deviation)",
                 uncertainty.source(),
@@ -446,56 +455,66 @@ fn model(list: &mut List, compiled: &Compiled) {
                 uncertainty.torque_percent
             )
         });
-        let of_whom = match pair.borrowed_from.as_str() {
+        let (what, borrowed) = match kind {
+            Kind::Pair(pair) => (pair.basis.name(), pair.borrowed_from.as_str()),
+            Kind::SingleRotor(_) => ("single rotor", ""),
+        };
+        let of_whom = match borrowed {
             "" => String::new(),
             borrowed => format!(", of {borrowed}, not yours"),
         };
-        (pair.basis.name().to_owned(), of_whom + &of_uncertainty)
+        (*kind, what.to_owned(), of_whom + &of_uncertainty)
     });
-    let maps = || pairs.iter().map(|compiled| &compiled.airframe.pair);
-    let uncertainty: Vec<_> = maps()
-        .map(|pair| {
-            pair.uncertainty.as_ref().map(|uncertainty| {
-                json!({
-                    "source": uncertainty.source(),
-                    "thrust_percent": uncertainty.thrust_percent,
-                    "torque_percent": uncertainty.torque_percent,
-                })
+    let told: Vec<_> = told.collect();
+    let uncertainty = kinds.iter().map(|kind| {
+        let json = |uncertainty: &Uncertainty| {
+            json!({
+                "source": uncertainty.source(),
+                "thrust_percent": uncertainty.thrust_percent,
+                "torque_percent": uncertainty.torque_percent,
             })
-        })
-        .collect();
-    let borrowed: Vec<_> = maps()
-        .map(|pair| Some(&pair.borrowed_from).filter(|from| !from.is_empty()))
+        };
+        kind.uncertainty().map(json)
+    });
+    let uncertainty: Vec<_> = uncertainty.collect();
+    let borrowed = airframe.pairs.iter().map(|pair| pair.borrowed_from.as_str());
+    let borrowed: Vec<_> = borrowed
+        .map(|from| Some(from).filter(|from| !from.is_empty()))
         .collect();
     let is_in_verdict = uncertainty.iter().any(Option::is_some) || borrowed.iter().any(Option::is_some);
-    list.say_of_each("pair", "", &told)
+    list.say_of_each("pair", "", kinds.len(), &told)
         .in_verdict_if(is_in_verdict)
         .json("borrowed_from", one_or_list(&borrowed))
         .json("uncertainty", one_or_list(&uncertainty));
-    let extent = |compiled: &Compiled, k: usize| {
-        let border = compiled.pair.border(SAMPLES).into_iter();
-        let values = border.map(|at| compiled.pair.efforts(at)[k]);
-        let widen = |[low, high]: [f64; 2], x: f64| [low.min(x), high.max(x)];
-        values.fold([f64::INFINITY, f64::NEG_INFINITY], widen)
-    };
-    let thrust = each(&|compiled| {
-        let [low, high] = extent(compiled, 0);
-        (format!("{low:.3} to {high:.3}"), String::new())
+    for (name, unit, k, decimals) in [("thrust of a unit", "N", 0, 3), ("torque of a unit", "N m", 1, 4)] {
+        let extent = kinds.iter().map(|kind| {
+            let map = PairMap::of_kind(*kind, &airframe.throttle);
+            let values = map.border(SAMPLES).into_iter().map(|at| map.efforts(at)[k]);
+            let widen = |[low, high]: [f64; 2], x: f64| [low.min(x), high.max(x)];
+            let [low, high] = values.fold([f64::INFINITY, f64::NEG_INFINITY], widen);
+            (
+                *kind,
+                format!("{low:.decimals$} to {high:.decimals$}"),
+                String::new(),
+            )
+        });
+        list.say_of_each(name, unit, kinds.len(), &extent.collect::<Vec<_>>());
+    }
+    let det_j = pairs.map(|(pair, of)| {
+        let words = format!(" at least: proven invertible, with idles from {}", of.least_idle);
+        (
+            Kind::Pair(pair),
+            format!("{:.4e}", of.injectivity.least_determinant),
+            words,
+        )
     });
-    list.say_of_each("thrust of a unit", "N", &thrust);
-    let torque = each(&|compiled| {
-        let [low, high] = extent(compiled, 1);
-        (format!("{low:.4} to {high:.4}"), String::new())
-    });
-    list.say_of_each("torque of a unit", "N m", &torque);
-    let det_j = each(&|compiled| {
-        let idle = compiled.least_idle;
-        let words = format!(" at least: proven invertible, with idles from {idle}");
-        (format!("{:.4e}", compiled.injectivity.least_determinant), words)
-    });
-    let least: Vec<f64> = pairs.iter().map(|of| of.injectivity.least_determinant).collect();
-    list.say_of_each("det J", "N N m", &det_j)
-        .json("least_det_j", one_or_list(&least));
+    let det_j: Vec<_> = det_j.collect();
+    let least = compiled
+        .of_pairs
+        .iter()
+        .map(|of| of.injectivity.least_determinant);
+    list.say_of_each("det J", "N N m", kinds.len(), &det_j)
+        .json("least_det_j", one_or_list(&least.collect::<Vec<_>>()));
 }
 
 /// The battery's voltage.
@@ -573,22 +592,25 @@ fn ceiling(list: &mut List, air: &Air) {
 
 /// The inverse map: what is proven of it, and its tables.
 fn inverse(list: &mut List, compiled: &Compiled) {
-    let (airframe, certificate) = (&compiled.airframe, &compiled.certificate);
-    let (evaluator, residual) = (compiled.evaluator, &compiled.residual);
-    let words = format!(": {}", evaluator.description());
-    list.say("evaluator", evaluator.name(), "", words)
-        .json("evaluator", evaluator.name())
-        .json("evaluator_description", evaluator.description());
+    let (airframe, of_pairs) = (&compiled.airframe, compiled.of_all_pairs());
+    let evaluator = of_pairs.as_ref().map(|of| of.evaluator);
+    let (name, words) = match evaluator {
+        Some(evaluator) => (evaluator.name(), format!(": {}", evaluator.description())),
+        None => (String::new(), "none: no unit is a pair".to_owned()),
+    };
+    list.say("evaluator", name, "", words)
+        .json("evaluator", evaluator.map(|evaluator| evaluator.name()))
+        .json(
+            "evaluator_description",
+            evaluator.map(|evaluator| evaluator.description()),
+        );
     let every = match (&airframe.voltage, &airframe.air) {
         (Some(_), Some(_)) => " at every voltage and density",
         (Some(_), None) => " at every voltage",
         (None, Some(_)) => " at every density",
         (None, None) => "",
     };
-    let allowed = [
-        airframe.inverse.thrust_tolerance_n,
-        airframe.inverse.torque_tolerance_nm,
-    ];
+    let allowed = airframe.inverse.tolerances();
     for (effort, (name, unit, proven_key, observed_key)) in [
         ("thrust error", "N", "proven_thrust_n", "observed_thrust_n"),
         ("torque error", "N m", "proven_torque_nm", "observed_torque_nm"),
@@ -596,26 +618,40 @@ fn inverse(list: &mut List, compiled: &Compiled) {
     .into_iter()
     .enumerate()
     {
-        let (proven, observed) = (certificate.stated[effort], residual.efforts[effort]);
-        let (allowed, seen) = (allowed[effort], rounded_up(observed));
-        let words = format!(" at most of a unit, proven{every}; allowed {allowed:?}, observed {seen}");
-        list.say(name, rounded_up(proven), unit, words)
-            .json(proven_key, proven)
+        let (stated, allowed) = (compiled.stated[effort], allowed[effort]);
+        let observed = of_pairs.as_ref().map(|of| of.residual.efforts[effort]);
+        let words = match observed {
+            Some(observed) => {
+                let seen = rounded_up(observed);
+                format!(" at most of a unit, proven{every}; allowed {allowed:?}, observed {seen}")
+            }
+            None => format!(" at most of a unit{every}, compared in every mix; allowed {allowed:?}"),
+        };
+        list.say(name, rounded_up(stated), unit, words)
+            .json(proven_key, stated)
             .json(observed_key, observed)
             .in_verdict();
     }
-    let (left, points) = (100.0 * certificate.margin(), residual.points);
-    let words = format!("; {left:.1} % of the tolerance left, {points} efforts observed");
-    let certificate = json!({
-        "bound": certificate.stated,
-        "bound_at_reference": certificate.reference,
-        "over_observed": certificate.over_observed(residual),
-        "margin": certificate.margin(),
-        "cells": certificate.cells,
+    let json = of_pairs.as_ref().map(|of| {
+        json!({
+            "bound": of.certificate.stated,
+            "bound_at_reference": of.certificate.reference,
+            "over_observed": of.certificate.over_observed(&of.residual),
+            "margin": of.certificate.margin(),
+            "cells": of.certificate.cells,
+        })
     });
-    list.say("proof", compiled.certificate.cells, "cells", words)
-        .json("observed_points", points)
-        .json("certificate", certificate);
+    let proof = match &of_pairs {
+        None => list.say("proof", "", "", "none: no unit is a pair"),
+        Some(of) => {
+            let (left, points) = (100.0 * of.certificate.margin(), of.residual.points);
+            let words = format!("; {left:.1} % of the tolerance left, {points} efforts observed");
+            list.say("proof", of.certificate.cells, "cells", words)
+        }
+    };
+    proof
+        .json("observed_points", of_pairs.as_ref().map(|of| of.residual.points))
+        .json("certificate", json);
     let lost = compiled.lost_outside_border;
     let cells = compiled.tables.closed_form.as_ref();
     let cells = cells.map_or(0, |table| table.cells.len().saturating_sub(1));

@@ -18,7 +18,7 @@ mod unused;
 
 use mixer_compiler::airframe::Airframe;
 use mixer_compiler::diagnostic::content::{self, Content};
-use mixer_compiler::model::PairMap;
+use mixer_compiler::model;
 use mixer_compiler::{Source, symmetry};
 use mixer_facts::checklist;
 use mixer_identify::pair_file::PairFile;
@@ -109,8 +109,7 @@ pub fn import(file: &Source, pair: Option<&Source>, options: &Options<'_>) -> Re
         let airframe = Source::new("airframe.toml", format!("name = \"a\"\n{tables}"));
         let airframe = Airframe::read(&airframe).ok();
         let of_bench = options.pulses_us.or_else(|| bench_pulses(airframe.as_ref()?));
-        let map = airframe.map(|airframe| airframe.with_mean_pair());
-        let map = map.map(|airframe| PairMap::new(&airframe.pair, &airframe.throttle));
+        let map = airframe.map(|airframe| model::mean(&airframe, &model::maps(&airframe)));
         let told = pulses.mismatch(of_bench.unwrap_or(USUAL_US), map.as_ref());
         imported.notes.extend(told);
     }

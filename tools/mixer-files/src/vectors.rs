@@ -103,7 +103,6 @@ fn conditions(volts: f64, density: f64) -> Conditions {
 /// Random setpoints of one airframe.
 struct Draw<'a> {
     compiled: &'a Compiled,
-    maps: Vec<PairMap>,
     /// Efforts `[f, Q]` along the border of the throttle box.
     borders: Vec<Vec<[f64; 2]>>,
     /// Largest wrench on each axis: all units at their best, whatever the others lose.
@@ -125,18 +124,13 @@ impl<'a> Draw<'a> {
             let [low, high] = correction.range;
             [low, correction.reference, high]
         };
-        let maps: Vec<PairMap> = airframe
-            .kinds()
-            .map(|pair| PairMap::new(pair, &airframe.throttle))
-            .collect();
         let border = |map: &PairMap| {
             let border = map.border(BORDER_POINTS).into_iter();
             border.map(|throttles| map.efforts(throttles)).collect()
         };
         Draw {
             compiled,
-            borders: maps.iter().map(border).collect(),
-            maps,
+            borders: compiled.maps.iter().map(border).collect(),
             size,
             volts: airframe.voltage.as_ref().map_or([12.0, 14.0, 16.0], values),
             densities: airframe.air.as_ref().map_or([0.0; 3], values),
@@ -235,7 +229,7 @@ impl<'a> Draw<'a> {
     }
 
     fn attainable(&mut self, index: usize) -> Vector {
-        let [low, high] = self.maps[0].range();
+        let [low, high] = self.compiled.airframe.throttle.range();
         let [lowest_v, _, highest_v] = self.volts;
         let volts = self.between(lowest_v, highest_v);
         let density = self.density();
@@ -251,8 +245,8 @@ impl<'a> Draw<'a> {
             low + (high - low) * self.between(from, to)
         };
         let throttles: Vec<[f64; 2]> = (0..units).map(|_| [throttle(), throttle()]).collect();
-        let throttles = throttles.into_iter().zip(&self.compiled.airframe.units);
-        let efforts = throttles.map(|(throttles, unit)| self.maps[unit.pair].efforts(throttles));
+        let throttles = throttles.into_iter().zip(&self.compiled.maps);
+        let efforts = throttles.map(|(throttles, map)| map.efforts(throttles));
         let wrench = self.wrench(efforts, self.factors(volts, density));
         (
             Wrench::from_array(wrench.map(|x| x as f32)),
@@ -284,7 +278,7 @@ impl<'a> Draw<'a> {
         let best = (0..units).map(|i| {
             let (by_f, by_q) = (factors[0] * gain(i), factors[1] * gain(units + i));
             let value = |[f, q]: &[f64; 2]| by_f * f + by_q * q;
-            let border = &self.borders[self.compiled.airframe.units[i].pair];
+            let border = &self.borders[i];
             let best = border.iter().max_by(|a, b| value(a).total_cmp(&value(b)));
             best.copied().unwrap_or_default()
         });

@@ -169,6 +169,8 @@ impl Motor {
 
 #[cfg(test)]
 mod tests {
+    use mixer_compiler::airframe::Kind;
+
     use super::*;
     use crate::pair::Pair;
 
@@ -179,7 +181,7 @@ mod tests {
             let text = std::fs::read_to_string(&path).unwrap();
             let airframe =
                 mixer_compiler::airframe::Airframe::read(&mixer_compiler::Source::new(path, text)).unwrap();
-            Pair::new(&airframe.pair, &airframe.throttle)
+            Pair::new(Kind::Pair(&airframe.pairs[0]), &airframe.throttle)
         };
         files.iter().map(read).collect()
     }

@@ -5,7 +5,7 @@
 //! zero, weighted bilinearly by the shares of idle at which both rotors turn. So a rotor that spins
 //! up or stops gives continuous efforts, and one at rest leaves the other what the file says of it.
 
-use mixer_compiler::airframe::{self, RotorAlone, Throttle};
+use mixer_compiler::airframe::{Kind, RotorAlone, Throttle};
 
 /// Powers from 0 to the highest of any basis.
 const POWERS: usize = 5;
@@ -21,15 +21,25 @@ pub struct Pair {
 }
 
 impl Pair {
-    /// The map of the airframe file.
-    pub fn new(pair: &airframe::Pair, throttle: &Throttle) -> Self {
-        let coefficients = pair.thrust_n.iter().zip(&pair.torque_nm);
-        let terms = pair.basis.exponents().iter().zip(coefficients);
+    /// The map of a kind of unit.
+    pub fn new(kind: Kind<'_>, throttle: &Throttle) -> Self {
+        let (terms, alone) = match kind {
+            Kind::Pair(pair) => {
+                let coefficients = pair.thrust_n.iter().zip(&pair.torque_nm);
+                let terms = pair.basis.exponents().iter().zip(coefficients);
+                let terms = terms.map(|(&(u, l), (&f, &q))| ([u.into(), l.into()], [f, q]));
+                (terms.collect(), [pair.lower_out.clone(), pair.upper_out.clone()])
+            }
+            // A pair whose lower rotor never turns.
+            Kind::SingleRotor(rotor) => {
+                let terms = rotor.alone.thrust_n.iter().zip(&rotor.alone.torque_nm);
+                let terms = (1..).zip(terms).map(|(power, (&f, &q))| ([power, 0], [f, q]));
+                (terms.collect(), [Some(rotor.alone.clone()), None])
+            }
+        };
         Pair {
-            terms: terms
-                .map(|(&(u, l), (&f, &q))| ([u.into(), l.into()], [f, q]))
-                .collect(),
-            alone: [pair.lower_out.clone(), pair.upper_out.clone()],
+            terms,
+            alone,
             idle: throttle.min,
         }
     }
@@ -89,8 +99,8 @@ mod tests {
     fn it_is_the_compilers_map() {
         let airframe = crate::vehicle::airframe().unwrap();
         let (pair, map) = (
-            Pair::new(&airframe.pair, &airframe.throttle),
-            PairMap::new(&airframe.pair, &airframe.throttle),
+            Pair::new(Kind::Pair(&airframe.pairs[0]), &airframe.throttle),
+            PairMap::new(&airframe.pairs[0], &airframe.throttle),
         );
         for throttles in [[0.1, 0.1], [0.3, 0.8], [1.0, 0.5], [1.0, 1.0]] {
             let (ours, theirs) = (pair.efforts(throttles), map.efforts(throttles));
@@ -107,7 +117,7 @@ mod tests {
     #[test]
     fn below_idle_it_is_continuous_down_to_rest() {
         let airframe = crate::vehicle::airframe().unwrap();
-        let pair = Pair::new(&airframe.pair, &airframe.throttle);
+        let pair = Pair::new(Kind::Pair(&airframe.pairs[0]), &airframe.throttle);
         assert_eq!(pair.efforts([0.0, 0.0]), [0.0, 0.0]);
         let [above, below] = [0.1, 0.1 - 1e-9].map(|l| pair.efforts([0.6, l]));
         assert!((above[0] - below[0]).abs() < 1e-6, "{above:?} {below:?}");

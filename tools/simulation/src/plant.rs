@@ -101,27 +101,30 @@ impl<const R: usize> Plant<R> {
         let reference_v = airframe.voltage.as_ref().map(|voltage| voltage.reference);
         let motor = Motor::new(flywheel::exponent(airframe), NO_LOAD, reference_v);
         // What cannot hover turns without reaction.
-        let of_pair = |airframe: &Airframe| {
-            let rotor =
-                Flywheel::new(airframe, body.mass_kg, None).map(|rotor| rotor.with_lag(body.rotor_lag_s));
+        let of_kind = |rotor: Option<Flywheel>| {
+            let rotor = rotor.map(|rotor| rotor.with_lag(body.rotor_lag_s));
             let [throttle, momentum_nms] = rotor.map_or([1.0, 0.0], |rotor| {
                 [rotor.hover_throttle, 2.0 * rotor.lead_s * rotor.torque_nm]
             });
             let speed = motor.speed_at_reference(throttle);
             (speed, momentum_nms / speed)
         };
-        let pairs: Vec<_> = airframe.of_each_pair().iter().map(of_pair).collect();
+        let kinds = Flywheel::of_mass(airframe, body.mass_kg, None).into_iter();
+        let kinds: Vec<(f64, f64)> = kinds.map(of_kind).collect();
         let units = airframe.units.iter().map(|unit| Unit {
             position_m: Vector3::from(unit.position_m),
             axis: Vector3::from(unit.axis),
             spin_sign: airframe.spin_sign(unit),
             channels: [unit.upper_channel, unit.lower_channel.unwrap_or(usize::MAX)],
-            pair: Pair::new(airframe.pair_of(unit), &airframe.throttle),
-            // Of a single rotor that of a rotor of the first pair.
-            momentum_nms: pairs.get(unit.pair).unwrap_or(&pairs[0]).1,
+            pair: Pair::new(airframe.kind_of(unit), &airframe.throttle),
+            // The spin's sign is that of the torque, which counts negative for the upper rotor of a pair alone.
+            momentum_nms: match unit.lower_channel {
+                Some(_) => kinds[unit.kind].1,
+                None => -kinds[unit.kind].1,
+            },
         });
-        // All rotors have one lag, at the mean of their speeds in hover where pairs differ.
-        let speed = pairs.iter().map(|(speed, _)| speed).sum::<f64>() / pairs.len() as f64;
+        // All rotors have one lag, at the mean of their speeds in hover where kinds differ.
+        let speed = kinds.iter().map(|(speed, _)| speed).sum::<f64>() / kinds.len() as f64;
         Plant {
             units: units.collect(),
             motor: motor.with_lag(body.rotor_lag_s, speed),

@@ -143,7 +143,7 @@ fn yaw_begins_with_the_reaction_of_the_rotors() {
         for mass_kg in [BODY.mass_kg, 6.82] {
             let body = Body { mass_kg, ..BODY };
             let plant = Plant::<ROTORS>::new(&airframe, body, REFERENCE, SVector::zeros());
-            let rotor = Flywheel::new(&airframe, mass_kg, None).unwrap();
+            let rotor = Flywheel::of_mass(&airframe, mass_kg, None)[0].unwrap();
             let mut command = SVector::<f64, ROTORS>::repeat(rotor.hover_throttle);
             let hover = plant.steady(&State::level(Vector3::zeros(), 0.0), &command);
             for unit in &airframe.units {
@@ -240,7 +240,7 @@ fn the_conventional_mixer_agrees_with_the_oracle() {
     let airframe = vehicle::airframe().unwrap();
     let effectiveness = Effectiveness::new(&airframe).unwrap();
     let mixer = Mixer::new(Method::Conventional, &airframe).unwrap();
-    let map = PairMap::new(&airframe.pair, &airframe.throttle);
+    let map = PairMap::new(&airframe.pairs[0], &airframe.throttle);
     let voltage = airframe.voltage.as_ref().unwrap();
     for (asked, volts, given) in ORACLE {
         let (throttle, limited) = mixer.mix(&Vector4::from(asked), volts).unwrap();

@@ -632,7 +632,7 @@ function renderNumbers() {
   const lack = !numbers ? "no airframe yet" : mass === null ? "needs the mass" : "the weight is not carried";
   const at = volts ? ` at ${volts} V` : "";
   const rows = [
-    ["Hover throttle", throttles && `${span(throttles[0])} upper, ${span(throttles[1])} lower`,
+    ["Hover throttle", throttles?.map((ends, layer) => span(ends) + (throttles.length > 1 ? [" upper", " lower"][layer] : "")).join(", "),
       usual ? `usual: ${span(usual)}${at}, where these rotors give 30 to 60 % of their largest thrust` : "usual: 30 to 60 % of the largest thrust"],
     ["Thrust over weight", ratio && ratio.toFixed(2), `usual: 1.7 to 3.3${at}`],
     ["Yaw left in hover", yaw && `${short(yaw)} N m${share ? `, ${percent(share)} of the roll` : ""}`, "usual: 2 to 10 % of the roll"],

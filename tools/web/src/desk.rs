@@ -50,8 +50,8 @@ pub struct Numbers {
     pub mass_kg: Option<f64>,
     /// Voltage, V; `None` where it has no effect.
     pub volts: Option<f64>,
-    /// Least and greatest throttle in hover, of the upper and of the lower rotors.
-    pub hover: Option<[[f64; 2]; 2]>,
+    /// Least and greatest throttle in hover, of the upper and, where there are any, of the lower rotors; empty without hover.
+    pub hover: Vec<[f64; 2]>,
     /// Throttles at which this airframe gives a usual share of its largest bare thrust.
     pub usual_hover: Option<[f64; 2]>,
     /// Largest bare thrust over weight.
@@ -74,15 +74,14 @@ impl Numbers {
             .as_ref()
             .map(|voltage| voltage.reference);
         let ceiling = f64::from(compiled.thrust_range_n[1]);
-        let throttles = |hover: &HoverAt| hover.layers().map(|layers| layers.map(|(ends, _)| ends));
+        let throttles =
+            |hover: &HoverAt| -> Vec<[f64; 2]> { hover.layers().into_iter().map(|(ends, _)| ends).collect() };
         let usual = USUAL.map(|share| throttles(&HoverAt::new(compiled, share * ceiling, volts)));
-        let usual = match usual {
-            [
-                Some([[upper, _], [lower, _]]),
-                Some([[_, upper_most], [_, lower_most]]),
-            ] => Some([upper.min(lower), upper_most.max(lower_most)]),
-            _ => None,
-        };
+        let [least, most] = &usual;
+        let usual = (!least.is_empty() && !most.is_empty()).then(|| {
+            let least = least.iter().map(|ends| ends[0]).fold(f64::INFINITY, f64::min);
+            [least, most.iter().map(|ends| ends[1]).fold(0.0, f64::max)]
+        });
         let at = hover.as_ref().and_then(|hover| hover.at.last());
         let left = |axis: Axis| {
             let mut margins = at?.margins.iter();
@@ -94,7 +93,7 @@ impl Numbers {
         Numbers {
             mass_kg: hover.as_ref().map(|hover| hover.mass_kg),
             volts,
-            hover: at.and_then(throttles),
+            hover: at.map_or_else(Vec::new, throttles),
             usual_hover: usual,
             over_weight: hover.as_ref().map(|hover| hover.thrust_over_weight),
             yaw_nm,
@@ -179,7 +178,7 @@ impl Checked {
         let study = Study::new(&self.compiled, None);
         let shown = match texts.as_slice() {
             [] => Ok(None),
-            texts => bench_points(&study.of_pair, texts, Settings::default()).map(Some),
+            texts => bench_points(&study, texts, Settings::default()).map(Some),
         };
         let (bench, refused) = match shown {
             Ok(bench) => (bench, String::new()),

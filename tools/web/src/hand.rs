@@ -2,8 +2,8 @@
 //! units' efforts out, beside those of a mixer that takes the rotors for isolated.
 
 use cargo_mixer::rows;
-use mixer_compiler::airframe::{Airmode, Axis, Correction, Unit};
-use mixer_compiler::model::{PairMap, Physics, scales};
+use mixer_compiler::airframe::{Airmode, Axis, Correction, Kind, Unit, View};
+use mixer_compiler::model::{PairMap, scales};
 use mixer_facts::checklist::Checklist;
 use mixer_files::report::study::Study;
 use mixer_rt::{Conditions, Wrench};
@@ -59,11 +59,11 @@ pub struct Drawn {
 pub fn scene(checked: &Checked) -> Scene {
     let compiled = &checked.compiled;
     let airframe = &compiled.airframe;
-    let border = |pair| -> Vec<[f64; 2]> {
-        let map = PairMap::new(pair, &airframe.throttle);
+    let border = |view: View<'_, Kind<'_>>| -> Vec<[f64; 2]> {
+        let map = PairMap::of_kind(view.of, &airframe.throttle);
         map.border(BORDER).into_iter().map(|t| map.efforts(t)).collect()
     };
-    let borders: Vec<Vec<[f64; 2]>> = airframe.kinds().map(border).collect();
+    let borders: Vec<Vec<[f64; 2]>> = airframe.views().map(border).collect();
     let mut extent = [[0.0, 0.0]; 2];
     let [top_v, top_density] =
         [&airframe.voltage, &airframe.air].map(|of| of.as_ref().map_or(0.0, |of| of.range[1]));
@@ -161,15 +161,12 @@ pub fn mix(
     let (throttles, achieved, saturation) = mixed.map_err(|error| error.to_string())?;
     let isolated = checked.isolated.conventional(&setpoint, volts);
     let (isolated, _) = isolated.map_err(|error| error.to_string())?;
-    let physics = Physics {
-        airframe,
-        map: &compiled.pair,
-    };
+    let physics = compiled.physics();
     let factors = airframe.factors(f64::from(volts), f64::from(density));
     let efforts = |throttles: &[f32]| -> Vec<[f64; 2]> {
         let of = |unit| physics.efforts(unit, throttles, health);
         let at = |[f, q]: [f64; 2]| [factors[0] * f, factors[1] * q];
-        airframe.units.iter().map(of).map(at).collect()
+        (0..airframe.units.len()).map(of).map(at).collect()
     };
     Ok(Mixed {
         factors,

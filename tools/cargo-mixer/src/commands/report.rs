@@ -79,18 +79,19 @@ impl ReportArgs {
 ///
 /// # Errors
 /// Remembered options that are none, a file that cannot be read or that holds a single rotor.
-pub fn bench_points(compiled: &Compiled, files: &[Text], given: Settings) -> Result<BenchPoints, String> {
+pub fn bench_points(study: &Study<'_>, files: &[Text], given: Settings) -> Result<BenchPoints, String> {
     let settings = match given.options.as_slice() {
-        [] => remembered(compiled)?,
+        [] => remembered(study)?,
         _ => given,
     };
-    bench::read(compiled, files, &settings).map_err(|refusal| refusal.to_string())
+    bench::read(study, files, &settings).map_err(|refusal| refusal.to_string())
 }
 
-fn remembered(compiled: &Compiled) -> Result<Settings, String> {
-    let remembered = ReadingArgs::remembered(&compiled.airframe.pair.bench_options);
+fn remembered(study: &Study<'_>) -> Result<Settings, String> {
+    let options = study.of_pair().map_or(&[][..], |(pair, _)| &pair.bench_options);
+    let remembered = ReadingArgs::remembered(options);
     remembered.map(|reading| reading.settings()).map_err(|error| {
-        let place = &compiled.source.name;
+        let place = &study.compiled.source.name;
         format!("{place}: `pair.bench_options`: {error}; they are those of cargo mixer identify --help")
     })
 }
@@ -106,10 +107,10 @@ pub fn run(args: &ReportArgs) -> Done {
         [] => None,
         files => {
             let texts = bench_files::texts(files);
-            Some(bench_points(&study.of_pair, &texts, args.reading.settings()).map_err(print_error)?)
+            Some(bench_points(&study, &texts, args.reading.settings()).map_err(print_error)?)
         }
     };
-    for doubt in bench.iter().flat_map(|bench| bench.doubts(&study.of_pair)) {
+    for doubt in bench.iter().flat_map(|bench| bench.doubts(&study)) {
         crate::print_note(format_args!("warning: {doubt}"));
     }
     study.flown = args

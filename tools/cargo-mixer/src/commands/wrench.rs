@@ -3,7 +3,6 @@
 
 use mixer_compiler::Compiled;
 use mixer_compiler::airframe::{Airframe, Correction};
-use mixer_compiler::model::Physics;
 use mixer_rt::Health;
 
 use crate::Done;
@@ -40,7 +39,7 @@ pub const GIVEN: Task<f64> = Task {
 /// A throttle outside 0 to 1, a voltage or a density outside the airframe's range.
 pub fn wrench(compiled: &Compiled, health: Health, row: &Row<f64>) -> Result<[f64; 4], String> {
     let factors = factors(&compiled.airframe, row)?;
-    Ok(physics(compiled).wrench(&row.values, factors, health))
+    Ok(compiled.physics().wrench(&row.values, factors, health))
 }
 
 /// `[f, Q]` (N, N m) of every unit, of a row of [`GIVEN`].
@@ -49,17 +48,10 @@ pub fn wrench(compiled: &Compiled, health: Health, row: &Row<f64>) -> Result<[f6
 /// As [`wrench`].
 pub fn efforts(compiled: &Compiled, health: Health, row: &Row<f64>) -> Result<Vec<[f64; 2]>, String> {
     let [by_f, by_q] = factors(&compiled.airframe, row)?;
-    let physics = physics(compiled);
-    let units = compiled.airframe.units.iter();
+    let physics = compiled.physics();
+    let units = 0..compiled.airframe.units.len();
     let efforts = units.map(|unit| physics.efforts(unit, &row.values, health));
     Ok(efforts.map(|[f, q]| [by_f * f, by_q * q]).collect())
-}
-
-fn physics(compiled: &Compiled) -> Physics<'_> {
-    Physics {
-        airframe: &compiled.airframe,
-        map: &compiled.pair,
-    }
 }
 
 /// `[k_f, k_Q]` of a row of throttles.

@@ -50,7 +50,7 @@ fn fly(map: &Path, basis: &str) {
     let name = map.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let identified = maps::identified(map, basis);
     let compiled = compiled(&identified);
-    let pair = mixer_compiler::model::PairMap::new(&compiled.airframe.pair, &compiled.airframe.throttle);
+    let pair = mixer_compiler::model::PairMap::new(&compiled.airframe.pairs[0], &compiled.airframe.throttle);
     let (low, high) = (compiled.airframe.throttle.min, compiled.airframe.throttle.max);
     let inside = |throttle: f64| (low..=high).contains(&throttle);
     let points = || identified.files[0].points.iter();

@@ -44,7 +44,7 @@ fn every_map_compiles_close_to_its_fold() {
             for max in [1.0, measured.unwrap_or(1.0)] {
                 let name = map.file_name().unwrap_or_default().to_string_lossy();
                 let what = format!("{} {basis:<11} {max:>4}", &name[4..23]);
-                let least = EnclosedPairMap::new(&own.pair).least_idle(max);
+                let least = EnclosedPairMap::new(&own.pairs[0]).least_idle(max);
                 let least = least.unwrap_or_else(|| panic!("{what}: folds at every idle"));
                 // Upwards to 1e-4, as the compiler offers it.
                 let min = (1e4 * IDLE * least).ceil() / 1e4;
@@ -61,14 +61,17 @@ fn every_map_compiles_close_to_its_fold() {
                         continue;
                     }
                 };
-                let [f, q] = compiled.certificate.stated;
+                let [f, q] = compiled.of_pairs[0].certificate.stated;
                 println!(
                     "{what} {min:>7.5} {:>5}  {:<22} {f:>8.2e} {q:>8.2e}",
                     started.elapsed().as_millis(),
-                    compiled.evaluator.name(),
+                    compiled.of_pairs[0].evaluator.name(),
                 );
                 assert!(
-                    compiled.certificate.holds() && compiled.certificate.agrees(&compiled.residual),
+                    compiled.of_pairs[0].certificate.holds()
+                        && compiled.of_pairs[0]
+                            .certificate
+                            .agrees(&compiled.of_pairs[0].residual),
                     "{what}"
                 );
             }

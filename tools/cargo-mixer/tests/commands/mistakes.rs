@@ -32,7 +32,7 @@ use crate::{folder, in_shell, measured, root};
 fn inputs(place: &Path) {
     let text = fs::read_to_string(root().join("airframes/x8-11in-least-power.toml")).unwrap();
     let airframe = Airframe::read(&Source::new("x8.toml", text.as_str())).unwrap();
-    let map = PairMap::new(&airframe.pair, &airframe.throttle);
+    let map = PairMap::new(&airframe.pairs[0], &airframe.throttle);
     let mut state = 1_u64;
     let mut noise = |size: f64| {
         state = state
@@ -59,7 +59,7 @@ fn inputs(place: &Path) {
         .map(|[u, l]| row(u, l))
         .concat();
     fs::write(place.join("four.csv"), format!("{header}{four}")).unwrap();
-    let alone = airframe.pair.lower_out.as_ref().expect("a run");
+    let alone = airframe.pairs[0].lower_out.as_ref().expect("a run");
     let mut run = "throttle (%),thrust (g),torque (Nm),voltage (V),rpm,current (A)\n".to_owned();
     for percent in [30, 40, 50, 60, 70, 80, 90, 100] {
         let x = f64::from(percent) / 100.0;
@@ -113,7 +113,7 @@ fn numbers(text: &str) -> Vec<f64> {
     let Ok(airframe) = Airframe::read(&Source::new("out.toml", text)) else {
         return Vec::new();
     };
-    let map = PairMap::new(&airframe.pair, &airframe.throttle);
+    let map = PairMap::new(&airframe.pairs[0], &airframe.throttle);
     let throttles = [[0.4, 0.4], [0.9, 0.9], [0.9, 0.4], [0.4, 0.9]];
     let efforts = throttles.into_iter().flat_map(|t| map.efforts(t));
     let units = airframe.units.iter().flat_map(|unit| {
@@ -121,7 +121,7 @@ fn numbers(text: &str) -> Vec<f64> {
         unit.position_m.into_iter().chain([
             a,
             b,
-            f64::from(u8::from(unit.upper_spin == airframe.pair.upper_spin)),
+            f64::from(u8::from(unit.upper_spin == airframe.pairs[0].upper_spin)),
         ])
     });
     let references =

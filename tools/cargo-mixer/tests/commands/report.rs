@@ -255,7 +255,7 @@ fn sweeps_are_rectangular_with_units_in_the_header() {
 fn the_error_stays_below_its_bound() {
     for compiled in airframes() {
         let study = Study::new(&compiled, None);
-        let allowed = compiled.certificate.reference;
+        let allowed = compiled.of_pairs[0].certificate.reference;
         let data = sweep(&study, Data::Error).unwrap();
         let mut largest = [0.0f64; 2];
         for line in data.lines().skip(1) {

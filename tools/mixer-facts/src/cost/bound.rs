@@ -63,19 +63,15 @@ const ITERATION_UNIT: [u32; 2] = [355, 420];
 /// The pair of a unit looked up among several, in least norm or in an iteration.
 const KIND: u32 = 25;
 
-/// A pass over single rotors, and one unit in it that is one; such a unit before and after the passes, and its throttle
-/// found apart.
-const PASS: u32 = 60;
-const PASS_UNIT: u32 = 215;
-const SINGLE_UNIT: u32 = 350;
+/// The throttle of a single rotor found apart.
 const SINGLE_APART: u32 = 350;
 
 /// A slack of the request in all iterations: that of a reserve, and that of yaw beyond the request with rotors out.
 const SLACK: u32 = MOST_ITERATIONS * 60;
 
-/// Least norm with rotors out beside that of whole units, and one unit in it that has a single rotor.
-const ROTORS_OUT: u32 = 1000;
-const ROTORS_OUT_UNIT: u32 = 800;
+/// Least norm with rotors alone beside that of whole pairs, and one unit in it that has one.
+const ROTORS_ALONE: u32 = 1000;
+const ROTOR_ALONE: u32 = 800;
 
 /// The bound for a compiled airframe while all rotors turn; `None` for an evaluator that has not been
 /// counted.
@@ -83,33 +79,34 @@ pub(super) fn bound(compiled: &Compiled) -> Option<u32> {
     match &compiled.tables.closed_form {
         Some(table) => closed_form(compiled, table),
         // Least norm of the request, and of level flight.
-        None => Some(2 * least_norm(compiled)? + per_mix(compiled) + interior(compiled, 0)),
+        None => {
+            let alone = compiled.airframe.single_units();
+            Some(2 * least_norm(compiled, alone)? + per_mix(compiled) + interior(compiled, 0))
+        }
     }
 }
 
 /// The bound with any number of rotors out, of every frame.
 pub(super) fn with_rotors_out(compiled: &Compiled) -> Option<u32> {
-    let n = compiled.tables.units.len() as u32;
-    let apart = compiled.airframe.single_units() as u32 * SINGLE_APART;
-    let least_norm = least_norm(compiled)? + ROTORS_OUT + n * ROTORS_OUT_UNIT + apart;
-    Some(least_norm + per_mix(compiled) + interior(compiled, 1))
+    let units = compiled.airframe.units.len();
+    Some(least_norm(compiled, units)? + per_mix(compiled) + interior(compiled, 1))
 }
 
-/// Least norm of all units.
-fn least_norm(compiled: &Compiled) -> Option<u32> {
-    let basis = compiled.airframe.pair.basis;
-    let (n, single) = (
-        compiled.tables.units.len() as u32,
-        compiled.airframe.single_units() as u32,
-    );
-    let pair = compiled.evaluator.instructions(basis)? + forward(basis) + PER_UNIT + kind(compiled);
-    let passes = match single {
-        0 => 0,
-        _ => {
-            u32::from(compiled.tables.passes) * (PASS + n * KIND + single * PASS_UNIT) + single * SINGLE_UNIT
+/// Least norm of all units, so many of which have one rotor or none.
+fn least_norm(compiled: &Compiled, alone: usize) -> Option<u32> {
+    let airframe = &compiled.airframe;
+    let pair = match super::inverse(compiled) {
+        Some((evaluator, basis)) => {
+            evaluator.instructions(basis)? + forward(basis) + PER_UNIT + kind(compiled)
         }
+        None => 0,
     };
-    Some((n - single) * pair + passes)
+    let of_pairs = airframe.pair_units() as u32 * pair;
+    let of_alone = match alone as u32 {
+        0 => 0,
+        alone => ROTORS_ALONE + alone * ROTOR_ALONE,
+    };
+    Some(of_pairs + airframe.single_units() as u32 * SINGLE_APART + of_alone)
 }
 
 /// The interior point method: all iterations, with so many slacks beside that of a reserve.
@@ -117,21 +114,17 @@ fn interior(compiled: &Compiled, slacks: u32) -> u32 {
     let n = compiled.tables.units.len() as u32;
     let unit = ITERATION_UNIT[usize::from(!compiled.tables.is_vertical)];
     // Additional instructions for the derivatives of the basis.
-    let more = match compiled.airframe.pair.basis {
-        Basis::Biquadratic => 0,
-        Basis::Cubic => 10,
-        Basis::Quartic => 45,
+    let more = match super::inverse(compiled) {
+        Some((_, Basis::Quartic)) => 45,
+        Some((_, Basis::Cubic)) => 10,
+        Some((_, Basis::Biquadratic)) | None => 0,
     };
     let slacks = slacks + u32::from(compiled.tables.priorities.yaw_reserve_nm > 0.0);
     MOST_ITERATIONS * (ITERATION + n * (unit + more + kind(compiled))) + slacks * SLACK + CUT + n * CUT_UNIT
 }
 
 fn kind(compiled: &Compiled) -> u32 {
-    if compiled.tables.kind_of.is_empty() {
-        0
-    } else {
-        KIND
-    }
+    if compiled.airframe.is_unlike() { KIND } else { 0 }
 }
 
 /// Checks, and corrections of voltage and density where there are any.
@@ -151,8 +144,8 @@ fn forward(basis: Basis) -> u32 {
 }
 
 fn closed_form(compiled: &Compiled, table: &ClosedFormTable) -> Option<u32> {
-    let basis = compiled.airframe.pair.basis;
-    let evaluator = compiled.evaluator.instructions(basis)?;
+    let (evaluator, basis) = super::inverse(compiled)?;
+    let evaluator = evaluator.instructions(basis)?;
     let n = table.units.len() as u32;
     let inverses = n * (evaluator + forward(basis));
     let reach = REACH + n * REACH_UNIT;

@@ -25,10 +25,9 @@ const PER_CORRECTION: u32 = 50;
 /// The pair of a unit looked up among several.
 const PER_KIND: u32 = 35;
 
-/// A pass over single rotors, one of these in it, and such a one before and after the passes.
-const PER_PASS: u32 = 44;
-const PER_STEP: u32 = 130;
-const PER_SINGLE: u32 = 338;
+/// Least norm with single rotors beside that of pairs, and one of these in it.
+const WITH_SINGLE_ROTORS: u32 = 600;
+const PER_SINGLE: u32 = 700;
 
 /// Requests that least norm delivers: the median over attainable ones.
 const CLOSED_FORM: Overhead = Overhead {
@@ -77,18 +76,20 @@ impl Overhead {
     fn estimate(&self, compiled: &Compiled) -> Option<Estimate> {
         let airframe = &compiled.airframe;
         let single = airframe.single_units() as u32;
-        let pairs = airframe.units.len() as u32 - single;
-        let passes = match single {
+        let singles = match single {
             0 => 0,
-            _ => u32::from(compiled.tables.passes) * (PER_PASS + single * PER_STEP) + single * PER_SINGLE,
+            _ => WITH_SINGLE_ROTORS + single * PER_SINGLE,
         };
         let corrections = airframe.voltage.iter().chain(&airframe.air).count() as u32;
         let kind = if airframe.is_unlike() { PER_KIND } else { 0 };
-        let one = compiled.evaluator.instructions(airframe.pair.basis)? + kind;
+        let pair = match super::inverse(compiled) {
+            Some((evaluator, basis)) => self.per_unit + evaluator.instructions(basis)? + kind,
+            None => 0,
+        };
         Some(Estimate {
             instructions: self.per_mix
-                + pairs * (self.per_unit + one)
-                + passes
+                + airframe.pair_units() as u32 * pair
+                + singles
                 + PER_CORRECTION * corrections,
             error: self.error,
         })

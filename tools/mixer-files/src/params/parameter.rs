@@ -4,7 +4,6 @@ use std::fmt;
 
 use mixer_compiler::Compiled;
 use mixer_compiler::airframe::{Airframe, Pair};
-use mixer_compiler::model::PairMap;
 
 /// A parameter of a flight stack.
 #[derive(Clone, Debug)]
@@ -117,7 +116,7 @@ pub fn bench_pulses(airframe: &Airframe) -> Option<[f64; 2]> {
         us.iter().all(|us| (least..=most).contains(us)).then_some(us)
     };
     // Benches that disagree say nothing of the vehicle.
-    let mut all = airframe.pairs().map(of);
+    let mut all = airframe.pairs.iter().map(of);
     let first = all.next()?;
     first.filter(|_| all.all(|other| other == first))
 }
@@ -125,12 +124,6 @@ pub fn bench_pulses(airframe: &Airframe) -> Option<[f64; 2]> {
 /// To two decimals.
 pub(crate) fn hundredths(value: f64) -> f64 {
     (100.0 * value).round() / 100.0
-}
-
-/// The map of the mean unit.
-fn mean_map(compiled: &Compiled) -> PairMap {
-    let airframe = compiled.airframe.with_mean_pair();
-    PairMap::new(&airframe.pair, &airframe.throttle)
 }
 
 /// Points at which a curve is fitted.
@@ -141,7 +134,7 @@ const POINTS: u32 = 50;
 /// describe a rotor by this curve. `stretched` counts t from 0 at the least throttle to 1 at the
 /// largest.
 pub(crate) fn curve(compiled: &Compiled, stretched: bool) -> f64 {
-    let map = mean_map(compiled);
+    let map = compiled.mean_map();
     let [min, max] = map.range();
     let full = map.efforts([max, max])[0];
     let (mut products, mut squares) = (0.0, 0.0);

@@ -1,9 +1,8 @@
 //! Bench points beside the model, compared at the voltage at which they were measured.
 
-use mixer_compiler::Compiled;
-
 use crate::report::effort::Effort;
 use crate::report::number::significant;
+use crate::report::study::Study;
 
 /// One bench point with what the model says.
 #[derive(Clone, Debug, PartialEq)]
@@ -68,13 +67,13 @@ impl BenchPoints {
     /// V, where it is known.
     pub fn add(
         &mut self,
-        compiled: &Compiled,
+        study: &Study<'_>,
         line: u64,
         throttles: [f64; 2],
         measured: [f64; 2],
         voltage_v: Option<f64>,
     ) {
-        let (airframe, pair) = (&compiled.airframe, &compiled.pair);
+        let (airframe, pair) = (&study.compiled.airframe, &study.pair);
         let [low, high] = pair.range();
         let within = throttles.iter().all(|t| (low - 1e-9..=high + 1e-9).contains(t));
         let k = match (&airframe.voltage, voltage_v) {
@@ -99,9 +98,9 @@ impl BenchPoints {
     }
 
     /// Why these files may not be of the airframe's pair; empty where nothing speaks against them.
-    pub fn doubts(&self, compiled: &Compiled) -> Vec<String> {
-        let airframe = &compiled.airframe;
-        let scale = compiled.pair.scale();
+    pub fn doubts(&self, study: &Study<'_>) -> Vec<String> {
+        let airframe = &study.compiled.airframe;
+        let scale = study.pair.scale();
         let mut doubts = Vec::new();
         for (effort, largest) in Effort::BOTH.into_iter().zip(LARGEST_MISFIT) {
             let Some(misfit) = self.misfit(effort) else {

@@ -226,5 +226,6 @@ fn outline(study: &Study<'_>, figure: &mut Figure) {
 
 /// The proven bound of the error at the reference voltage, N or N m.
 pub fn error_bound(study: &Study<'_>, effort: Effort) -> f64 {
-    study.of_pair.certificate.reference[effort as usize]
+    let of_pair = study.of_pair();
+    of_pair.map_or(0.0, |(_, of)| of.certificate.reference[effort as usize])
 }

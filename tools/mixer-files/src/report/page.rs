@@ -7,6 +7,7 @@
 mod link;
 
 use maud::{Markup, PreEscaped, html};
+use mixer_compiler::OfPair;
 use mixer_compiler::airframe::Axis;
 use mixer_compiler::diagnostic::{printable, rounded_up};
 use mixer_compiler::hover;
@@ -82,19 +83,25 @@ pub fn content(study: &Study<'_>, bench: Option<&BenchPoints>, digest: Option<&s
     let errors = Effort::BOTH.map(|effort| maps::error_field(study, effort));
     let facts = mixer_facts::facts(compiled);
     // Anchor, title, content.
-    let sections = [
+    let mut sections = vec![
         ("layout", "Layout", layout_section(study)),
         ("bench-check", "Check list on the bench", bench_check(study)),
         ("level", "Throttle and power", level_section(study)),
         ("authority", "Authority", authority_section(study)),
         ("comparison", "Yaw at constant thrust", comparison_section(study)),
-        ("attainable", "Attainable set", attainable_section(study)),
-        ("forward", "Forward maps", forward_section(study, bench)),
-        ("inverse", "Inverse maps", inverse_section(study)),
-        ("error", "Error of the inverse", error_section(study, &errors)),
+    ];
+    if let Some((_, of)) = study.of_pair() {
+        sections.extend([
+            ("attainable", "Attainable set", attainable_section(study)),
+            ("forward", "Forward maps", forward_section(study, bench)),
+            ("inverse", "Inverse maps", inverse_section(study)),
+            ("error", "Error of the inverse", error_section(study, of, &errors)),
+        ]);
+    }
+    sections.extend([
         ("cost", "Cost on the target", cost_section(study, &facts)),
         ("matrices", "Allocation", table::matrices(study, &facts)),
-    ];
+    ]);
     let body = html! {
         h1 { (printable(&airframe.name)) }
         p.lead { (printable(&airframe.description)) }
@@ -122,7 +129,7 @@ pub fn content(study: &Study<'_>, bench: Option<&BenchPoints>, digest: Option<&s
 /// What is plausibly a mistake; nothing where there is none.
 fn warnings(study: &Study<'_>, bench: Option<&BenchPoints>) -> Markup {
     let records = mixer_compiler::lint(study.compiled).records();
-    let doubts = bench.map_or_else(Vec::new, |bench| bench.doubts(&study.of_pair));
+    let doubts = bench.map_or_else(Vec::new, |bench| bench.doubts(study));
     html! {
         @if !records.is_empty() || !doubts.is_empty() {
             ul.warnings {
@@ -285,7 +292,7 @@ fn authority_section(study: &Study<'_>) -> Markup {
             "The largest torque about one axis that the compiled mixer delivers in full, within its tolerance, while it \
              holds the thrust and no other torque is asked, found by asking the mixer itself. "
             (rotor_out)
-            @if let Some(uncertainty) = &study.of_pair.airframe.pair.uncertainty && !off.is_empty() {
+            @if let Some((pair, _)) = study.of_pair() && let Some(uncertainty) = &pair.uncertainty && !off.is_empty() {
                 " The pair is " (uncertainty.source()) ": by one standard deviation of its uncertainty the true torques are off by "
                 (off.join(", ")) "."
             }
@@ -389,8 +396,8 @@ fn inverse_section(study: &Study<'_>) -> Markup {
     }
 }
 
-fn error_section(study: &Study<'_>, fields: &[crate::report::field::Field; 2]) -> Markup {
-    let observed = &study.of_pair.residual;
+fn error_section(study: &Study<'_>, of: &OfPair, fields: &[crate::report::field::Field; 2]) -> Markup {
+    let observed = &of.residual;
     let at = match study.at_reference().as_str() {
         "" => " with the pair\u{2019}s map".to_owned(),
         at => at.to_owned(),
@@ -435,11 +442,13 @@ fn cost_section(study: &Study<'_>, facts: &[Fact]) -> Markup {
 
 /// What the script needs: the forward map and the error on its grid.
 fn model(study: &Study<'_>, errors: &[crate::report::field::Field; 2]) -> serde_json::Value {
-    let pair = &study.of_pair.airframe.pair;
-    let coefficients = pair.thrust_n.iter().zip(&pair.torque_nm);
-    let terms = pair.basis.exponents().iter().zip(coefficients);
-    let terms = terms.map(|(&(i, j), (&f, &q))| serde_json::json!([i, j, f, q]));
-    let terms: Vec<_> = terms.collect();
+    let terms = study.of_pair().map_or_else(Vec::new, |(pair, _)| {
+        let coefficients = pair.thrust_n.iter().zip(&pair.torque_nm);
+        let terms = pair.basis.exponents().iter().zip(coefficients);
+        terms
+            .map(|(&(i, j), (&f, &q))| serde_json::json!([i, j, f, q]))
+            .collect()
+    });
     let grids = errors.each_ref().map(|field| {
         let largest = field.values().iter().copied().fold(0.0, f64::max);
         // Where nothing is missed, 0 / 0 is NaN, which becomes 0.

@@ -286,7 +286,13 @@ pub fn hover_throttle(study: &Study<'_>, levels: &[Level]) -> Option<Figure> {
 
 /// Electrical power in level flight against thrust; `None` where the file has no power map.
 pub fn power(study: &Study<'_>, levels: &[Level]) -> Option<Figure> {
-    if study.compiled.airframe.pairs().any(|pair| pair.power.is_none()) {
+    if study
+        .compiled
+        .airframe
+        .pairs
+        .iter()
+        .any(|pair| pair.power.is_none())
+    {
         return None;
     }
     let curve = curve(levels, |level| level.power_w);

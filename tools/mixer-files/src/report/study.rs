@@ -1,8 +1,8 @@
 //! An airframe under study: what all figures are drawn from.
 
-use mixer_compiler::Compiled;
 use mixer_compiler::airframe::{Axis, Pair};
 use mixer_compiler::model::PairMap;
+use mixer_compiler::{Compiled, OfPair};
 use mixer_rt::{Health, Wrench};
 
 use crate::report::number::round_half_digit;
@@ -12,9 +12,7 @@ use crate::report::number::round_half_digit;
 pub struct Study<'a> {
     /// The airframe.
     pub compiled: &'a Compiled,
-    /// The pair whose maps are drawn, as if all units had it.
-    pub of_pair: Compiled,
-    /// Where it stands among the airframe's pairs.
+    /// The kind of unit whose maps are drawn: where it stands among the airframe's pairs, 0 where no unit is one.
     pub index: usize,
     /// Its forward map in f64.
     pub pair: PairMap,
@@ -35,6 +33,13 @@ pub struct Flown {
     pub throttles: Vec<[f64; 2]>,
 }
 
+/// The map of a kind of unit.
+fn map_of(compiled: &Compiled, kind: usize) -> PairMap {
+    let mut units = compiled.airframe.units.iter();
+    let unit = units.position(|unit| unit.kind == kind);
+    compiled.maps[unit.unwrap_or_default()].clone()
+}
+
 /// What a mixer meets in flight.
 #[derive(Clone, Copy, Debug)]
 pub struct Condition {
@@ -53,9 +58,8 @@ impl<'a> Study<'a> {
     pub fn new(compiled: &'a Compiled, thrust_n: Option<f64>) -> Self {
         let mut study = Study {
             compiled,
-            of_pair: compiled.of_each_pair().swap_remove(0),
             index: 0,
-            pair: compiled.pair.clone(),
+            pair: map_of(compiled, 0),
             thrust_n: round_half_digit(HOVER_SHARE * f64::from(compiled.thrust_range_n[1])),
             flown: None,
         };
@@ -71,40 +75,28 @@ impl<'a> Study<'a> {
     /// A name that no pair has.
     pub fn of(mut self, name: Option<&str>) -> Result<Self, String> {
         let Some(name) = name else { return Ok(self) };
-        let pairs = self.compiled.of_each_pair();
-        let names: Vec<&str> = self
-            .compiled
-            .airframe
-            .pairs()
-            .map(|pair| pair.name.as_str())
-            .collect();
+        let pairs = &self.compiled.airframe.pairs;
+        let names: Vec<&str> = pairs.iter().map(|pair| pair.name.as_str()).collect();
         let found = names.iter().position(|known| *known == name);
         let index = found.ok_or_else(|| match names.as_slice() {
+            [] => format!("--pair {name}: no unit of the airframe is a pair; leave --pair out"),
             [_] => format!("--pair {name}: the airframe has one pair; leave --pair out"),
             names => format!("--pair {name}: the airframe's pairs are {}", names.join(", ")),
         })?;
         self.index = index;
-        self.of_pair = pairs[index].clone();
-        self.pair = self.of_pair.pair.clone();
+        self.pair = map_of(self.compiled, index);
         Ok(self)
     }
 
     /// Whose maps are drawn, where units differ.
     pub fn whose(&self) -> Option<String> {
         let name = |pair: &Pair| format!("\"{}\"", pair.name);
-        let others: Vec<String> = self.compiled.airframe.pairs().map(name).collect();
-        let own = name(&self.of_pair.airframe.pair);
-        if !self.compiled.airframe.has_pairs() {
-            return Some(format!(
-                "No unit is a pair: the maps are those of two rotors {own} without a wake between them."
-            ));
-        }
-        self.compiled.airframe.is_unlike().then(|| {
-            format!(
-                "The maps of a pair are those of {own} among {}; `report --pair` draws another\u{2019}s.",
-                others.join(", ")
-            )
-        })
+        let all: Vec<String> = self.compiled.airframe.pairs.iter().map(name).collect();
+        let own = all.get(self.index).filter(|_| all.len() > 1)?;
+        Some(format!(
+            "The maps of a pair are those of {own} among {}; `report --pair` draws another\u{2019}s.",
+            all.join(", ")
+        ))
     }
 
     /// The weight, N; `None` where the file has no mass, or the weight is not carried at the
@@ -124,7 +116,7 @@ impl<'a> Study<'a> {
         let (throttles, _) = self.mix([0.0, 0.0, 0.0, weight_n], &self.reference());
         let mut distinct: Vec<[f64; 2]> = Vec::new();
         let units = self.compiled.airframe.units.iter().zip(throttles);
-        for (_, pair) in units.filter(|(unit, _)| unit.pair == self.index) {
+        for (_, pair) in units.filter(|(unit, _)| unit.kind == self.index) {
             let same = |other: &[f64; 2]| (0..2).all(|k| (other[k] - pair[k]).abs() < 1e-3);
             if !distinct.iter().any(same) {
                 distinct.push(pair);
@@ -141,11 +133,8 @@ impl<'a> Study<'a> {
 
     /// What units give at throttles `[u, l]` each, N and N m at the reference voltage.
     pub fn efforts_of(&self, throttles: &[[f64; 2]]) -> Vec<[f64; 2]> {
-        let airframe = &self.compiled.airframe;
-        let map = |pair| PairMap::new(pair, &airframe.throttle);
-        let maps: Vec<PairMap> = airframe.kinds().map(map).collect();
-        let units = airframe.units.iter().zip(throttles);
-        units.map(|(unit, at)| maps[unit.pair].efforts(*at)).collect()
+        let units = self.compiled.maps.iter().zip(throttles);
+        units.map(|(map, at)| map.efforts(*at)).collect()
     }
 
     /// Throttles `[u, l]` from `[s, t]` in the unit square.
@@ -162,21 +151,27 @@ impl<'a> Study<'a> {
     /// Throttles `[u, l]` that the emitted inverse gives for attainable `[f (N), Q (N m)]`; `None`
     /// where they are not.
     pub fn inverse(&self, efforts: [f64; 2]) -> Option<[f64; 2]> {
-        let tables = &self.of_pair.tables;
         let asked = efforts.map(|effort| effort as f32);
-        let found = tables.throttles(asked).map(f64::from);
+        let found = self.compiled.tables.throttles(self.index, asked)?.map(f64::from);
         self.pair.inverse(found, efforts).and(Some(found))
     }
 
     /// What the emitted inverse, run in f32 by `mixer-rt`, misses of the efforts at `throttles`,
-    /// signed, N and N m.
+    /// signed, N and N m; nothing where no unit is a pair.
     pub fn error(&self, throttles: [f64; 2]) -> [f64; 2] {
-        let tables = &self.of_pair.tables;
         let efforts = self.pair.efforts(throttles);
         let asked = efforts.map(|effort| effort as f32);
-        let found = tables.throttles(asked);
+        let Some(found) = self.compiled.tables.throttles(self.index, asked) else {
+            return [0.0; 2];
+        };
         let given = self.pair.efforts(found.map(f64::from));
         [given[0] - efforts[0], given[1] - efforts[1]]
+    }
+
+    /// The pair whose maps are drawn, and what is known of it; `None` where no unit is one.
+    pub fn of_pair(&self) -> Option<(&Pair, &OfPair)> {
+        let pair = self.compiled.airframe.pairs.get(self.index)?;
+        Some((pair, self.compiled.of_pairs.get(self.index)?))
     }
 
     /// The border of the attainable set at the reference voltage: throttles, closed.

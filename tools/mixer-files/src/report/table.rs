@@ -208,7 +208,9 @@ pub fn flown(flown: &Flown) -> Markup {
 
 /// The pair's coefficients, as the file has them.
 pub fn coefficients(study: &Study<'_>) -> Markup {
-    let pair = &study.of_pair.airframe.pair;
+    let Some((pair, _)) = study.of_pair() else {
+        return html! {};
+    };
     let terms = pair.basis.exponents().iter();
     let power = |letter: &str, exponent: u8| {
         html! {

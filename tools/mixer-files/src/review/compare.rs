@@ -234,7 +234,7 @@ fn flown(rows: &Rows, compiled: &Compiled) -> Vec<(usize, [f64; 2])> {
     let every = (whole.len() * units.len()).div_ceil(POINTS).max(1);
     let points = whole.iter().flat_map(|row| {
         let pairs = units.iter().filter(|unit| unit.lower_channel.is_some());
-        pairs.map(move |unit| (unit.pair, unit.throttles(&row.throttle)))
+        pairs.map(move |unit| (unit.kind, unit.throttles(&row.throttle)))
     });
     points.step_by(every).collect()
 }

@@ -1,7 +1,6 @@
 //! Rotors against their fellows, by the speeds that their controllers report.
 
 use mixer_compiler::Compiled;
-use mixer_compiler::model::Physics;
 use mixer_rt::Health;
 use serde::Serialize;
 
@@ -72,10 +71,7 @@ pub(crate) fn speeds(rows: &Rows, compiled: &Compiled) -> Vec<Speed> {
     let Some((all, conditions)) = all.zip(conditions) else {
         return Vec::new();
     };
-    let physics = Physics {
-        airframe: &compiled.airframe,
-        map: &compiled.pair,
-    };
+    let physics = compiled.physics();
     let [volts, density] = conditions.map(f64::from);
     let factors = compiled.airframe.factors(volts, density);
     let thrust = |scale: f32| {

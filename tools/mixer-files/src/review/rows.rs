@@ -16,7 +16,6 @@
 
 use mixer_compiler::Compiled;
 use mixer_compiler::airframe::GRAVITY;
-use mixer_compiler::model::Physics;
 use mixer_rt::Health;
 
 use crate::review::flight::Flight;
@@ -105,10 +104,7 @@ fn flies(landed: &Series, time_s: f64) -> bool {
 
 impl Rows {
     pub(crate) fn new(flight: &Flight, compiled: &Compiled, mass_kg: f64) -> Rows {
-        let physics = Physics {
-            airframe: &compiled.airframe,
-            map: &compiled.pair,
-        };
+        let physics = compiled.physics();
         let mut rows = Rows::default();
         let mut before: Option<f64> = None;
         let (mut take_offs, mut on_ground_s) = (0, f64::INFINITY);

@@ -61,7 +61,7 @@ impl Saturated {
         let (by, [roll, pitch, yaw, thrust]) = shares
             .or_else(|| by_stack(rows, flight))
             .unwrap_or((Source::None, [None; 4]));
-        let [min, max] = compiled.pair.range();
+        let [min, max] = compiled.airframe.throttle.range();
         let any = |is_of: &dyn Fn(f64) -> bool| rows.share(|row| turning(row).any(is_of));
         Saturated {
             by,

@@ -8,7 +8,6 @@ use std::fs;
 use std::path::Path;
 
 use mixer_compiler::airframe::GRAVITY;
-use mixer_compiler::model::Physics;
 use mixer_compiler::{Compiled, Source};
 use mixer_files::review::{Flight, Options, Review, scaled};
 use mixer_rt::{Health, Wrench};
@@ -292,10 +291,7 @@ fn a_scaled_file_gives_the_measured_thrust() {
     assert!(text.contains("cargo mixer review a.ulg"), "{text}");
     let scaled = mixer_compiler::compile(&Source::new("x8.toml", text)).unwrap();
     let wrench = |compiled: &Compiled| {
-        let physics = Physics {
-            airframe: &compiled.airframe,
-            map: &compiled.pair,
-        };
+        let physics = compiled.physics();
         physics.wrench(&[0.6; 8], [1.0, 1.0], Health::GOOD)
     };
     let [before, after] = [&compiled, &scaled].map(wrench);

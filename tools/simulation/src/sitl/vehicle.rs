@@ -102,8 +102,16 @@ impl Vehicle {
             )
         };
         let rotor_inertia = || stated?.rotor_inertia_kg_m2;
-        let rotor = Flywheel::new(&flown, mass_kg, arguments.rotor_inertia.or_else(rotor_inertia));
-        let rotor = rotor.ok_or_else(too_heavy)?;
+        let kinds = Flywheel::of_mass(&flown, mass_kg, arguments.rotor_inertia.or_else(rotor_inertia));
+        let kinds: Vec<Flywheel> = kinds.into_iter().flatten().collect();
+        let rotor = match kinds.as_slice() {
+            [] => return Err(too_heavy()),
+            [rotor] => *rotor,
+            // The plant has one lag for all.
+            [rotor, ..] => {
+                rotor.with_lag(kinds.iter().map(Flywheel::lag_s).sum::<f64>() / kinds.len() as f64)
+            }
+        };
         let rotor = with_lag(rotor, arguments.rotor_lag).map_err(|reason| format!("{path}: {reason}"))?;
         let moments = arguments.inertia.or_else(|| stated?.inertia_kg_m2);
         let body = Body {
@@ -162,12 +170,12 @@ fn with_map(own: &Airframe, path: &Path) -> Result<Airframe, String> {
     let other = read(path)?;
     if own.is_unlike() || other.is_unlike() {
         return Err(format!(
-            "--map {}: with several [[pair]] the map that is flown cannot be another file's",
+            "--map {}: with units of several kinds, or single rotors, the map that is flown cannot be another file's",
             path.display()
         ));
     }
     let mut flown = own.clone();
-    flown.pair = other.pair;
+    flown.pairs = other.pairs;
     flown.throttle = other.throttle;
     flown.voltage = other.voltage;
     flown.air = other.air;

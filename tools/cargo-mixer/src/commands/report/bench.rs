@@ -1,7 +1,7 @@
 //! Bench files for the report page, read as `identify` reads them.
 
-use mixer_compiler::Compiled;
 use mixer_files::report::bench::BenchPoints;
+use mixer_files::report::study::Study;
 use mixer_identify::bench::BenchKind;
 use mixer_identify::fit::balance::balanced;
 use mixer_identify::identified::Settings;
@@ -12,22 +12,17 @@ use mixer_identify::texts::{Text, read as ready};
 ///
 /// # Errors
 /// A file that cannot be read, or that holds a single rotor.
-pub(super) fn read(compiled: &Compiled, files: &[Text], settings: &Settings) -> Result<BenchPoints, Refusal> {
+pub(super) fn read(study: &Study<'_>, files: &[Text], settings: &Settings) -> Result<BenchPoints, Refusal> {
     let mut bench = BenchPoints::default();
     for file in files {
-        add(&mut bench, compiled, file, settings)?;
+        add(&mut bench, study, file, settings)?;
     }
     Ok(bench)
 }
 
-fn add(
-    points: &mut BenchPoints,
-    compiled: &Compiled,
-    file: &Text,
-    settings: &Settings,
-) -> Result<(), Refusal> {
+fn add(points: &mut BenchPoints, study: &Study<'_>, file: &Text, settings: &Settings) -> Result<(), Refusal> {
     let mut bench = ready(file, settings)?;
-    if compiled.airframe.voltage.is_some() {
+    if study.compiled.airframe.voltage.is_some() {
         bench = balanced(&bench);
     }
     if bench.kind != BenchKind::Pair {
@@ -40,7 +35,7 @@ fn add(
     for point in &bench.points {
         let voltage_v = Some(point.voltage).filter(|volts| volts.is_finite());
         let (throttles, measured) = ([point.u, point.l], [point.thrust, point.torque]);
-        points.add(compiled, point.line, throttles, measured, voltage_v);
+        points.add(study, point.line, throttles, measured, voltage_v);
     }
     let refused = bench.refused_rows.iter().map(ToString::to_string);
     points.refused.extend(refused);

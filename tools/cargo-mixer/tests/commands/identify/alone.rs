@@ -56,7 +56,7 @@ fn one_rotor_alone_is_recovered_and_compiles() {
     let text = format!("name = \"x\"\n{}\n{unit}{allocation}", fragment::text(&found));
     let compiled = mixer_compiler::compile(&Source::new("x.toml", text.clone()));
     let compiled = compiled.unwrap_or_else(|faults| panic!("{faults}\n{text}"));
-    let alone = compiled.airframe.pair.lower_out.as_ref().expect("lower_out");
+    let alone = compiled.airframe.pairs[0].lower_out.as_ref().expect("lower_out");
     assert_eq!(Some(alone.thrust_n), pair.lower_out.as_ref().map(|a| a.thrust_n));
     let json = serde_json::to_value(&found).expect("JSON");
     assert_eq!(json["pair"]["upper_out"]["points"], 19);

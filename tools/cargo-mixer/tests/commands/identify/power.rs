@@ -103,7 +103,7 @@ fn an_airframe_offers_the_bias_where_it_gains_by_it() {
         let compiled = mixer_compiler::compile(&mixer_compiler::Source::new("x8.toml", text));
         let compiled = compiled.unwrap_or_else(|faults| panic!("{faults}"));
         assert_eq!(Some(compiled.airframe.allocation.power_bias_nm_per_n), bias);
-        assert!(compiled.airframe.pair.power.is_some());
+        assert!(compiled.airframe.pairs[0].power.is_some());
     }
     let y6 = airframe(Frame::Y6);
     assert!(

@@ -101,7 +101,7 @@ fn own(compiled: &Compiled, _: &Options, all: &mut Parameters) {
     } else {
         all.note(NO_VOLTAGE);
     }
-    let [min, max] = compiled.pair.range();
+    let [min, max] = compiled.airframe.throttle.range();
     let throttle = compiled.equal_hover_throttle();
     let hover = throttle.map(|throttle| on_curve(expo, (throttle - min) / (max - min)));
     let why = "MOT_THST_EXPO's curve at the throttle that carries the weight at the reference voltage.";

@@ -132,7 +132,7 @@ fn own(compiled: &Compiled, _: &Options, all: &mut Parameters) {
         ));
     }
     idle(compiled, all, "Idle of the airframe, throttle.min, in 0.01 %.");
-    let [min, max] = compiled.pair.range();
+    let [min, max] = compiled.airframe.throttle.range();
     all.because("The largest throttle is throttle.max.").whole(
         "motor_output_limit",
         (100.0 * (max - min) / (1.0 - min)).round() as i32,
@@ -154,7 +154,7 @@ fn idle(compiled: &Compiled, all: &mut Parameters, why: &str) {
 
 /// Betaflight's hover for altitude hold and rescue; its throttle 1 is throttle.max of all rotors.
 fn hover_throttle(compiled: &Compiled, all: &mut Parameters) {
-    let [min, max] = compiled.pair.range();
+    let [min, max] = compiled.airframe.throttle.range();
     let hover = compiled.equal_hover_throttle();
     let hover = hover.map(|throttle| (1000.0 + 1000.0 * (throttle - min) / (max - min)).round());
     let why = "The throttle of hover at the reference voltage.";

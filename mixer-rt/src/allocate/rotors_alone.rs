@@ -1,14 +1,15 @@
-//! Least norm with rotors out: the throttles nearest those of the whole frame that give the wrench.
+//! Least norm where rotors turn alone: the throttles nearest those of the whole frame that give the wrench. A rotor is
+//! alone where its partner is out, and where it is a single rotor.
 //!
 //! ```text
-//! least   sum_whole (df^2 / D_f + dQ^2 / D_Q)  +  sum_single (t - t*)^2
-//! with    sum_whole B (y* + dy)  +  sum_single B y(t)  =  w
+//! least   sum_pairs (df^2 / D_f + dQ^2 / D_Q)  +  sum_alone (t - t*)^2
+//! with    sum_pairs B (y* + dy)  +  sum_alone B y(t)  =  w
 //! ```
 //!
-//! y* are the efforts of least norm of the whole frame (M+ w), t* the throttle that a single rotor has
+//! y* are the efforts of least norm of the whole frame (M+ w), t* the throttle that a rotor alone has
 //! there, D_f and D_Q the mean of f_u^2 + f_l^2 and of Q_u^2 + Q_l^2 over the throttles
-//! (`Tables::mean_square_slopes`): so both sums count squares of throttles. A unit with both rotors answers
-//! multipliers lambda of the rows by dy = D B^T lambda, a single rotor along its tangent by t - t* =
+//! (`PairKind::mean_square_slopes`): so both sums count squares of throttles. A pair with both rotors answers
+//! multipliers lambda of the rows by dy = D B^T lambda, a rotor alone along its tangent by t - t* =
 //! y'^T B^T lambda: one system of four rows per tangent. The inverse map turns the efforts into
 //! throttles. Whether all units then give them is checked, so no convexity is needed.
 
@@ -16,13 +17,14 @@ use super::closed_form::AllocationMethod;
 use super::frame::Frame;
 use super::system::{Factors, Products};
 use super::unit::UnitState;
-use crate::pair::single::LEAST_RISE;
-use crate::pair::{Inverse, Quantity};
+use crate::pair::alone::LEAST_RISE;
+use crate::pair::{Kinds, PairKind};
 use crate::{divided, larger, rolled, sqrt};
 
-/// Tangents along the curves of single rotors. Two serve 3 % fewer requests of an X8 with a rotor out, and
-/// 15 % fewer where torque over thrust bends most; four serve no more.
-const TANGENTS: u32 = 3;
+/// Tangents along the curves of rotors alone, on whole frames and with rotors out. With rotors out two serve 3 % fewer
+/// requests of an X8, and 15 % fewer where torque over thrust bends most; four serve no more. Single rotors of a whole
+/// frame begin at their share of least norm, from where two are enough.
+const TANGENTS: [u32; 2] = [2, 3];
 
 /// Multipliers beyond this are of rows that the frame does not serve.
 const UNSERVED: f32 = 100.0;
@@ -30,16 +32,21 @@ const UNSERVED: f32 = 100.0;
 /// Least square of the root that extends a tangent to a parabola: a step back to a fifth of the slope.
 const LEAST_SQUARE: f32 = 0.04;
 
-impl<P: Quantity, I: Inverse, S: AllocationMethod<P>, const VERTICAL: bool> Frame<'_, '_, P, I, S, VERTICAL> {
+impl<K: Kinds, S: AllocationMethod, const VERTICAL: bool> Frame<'_, '_, K, S, VERTICAL> {
     /// Writes throttles that are nearest those of the whole frame; true where they give the wrench.
     #[inline(never)]
-    pub(super) fn serve_with_rotors_out(&self, wrench: &[f32; 4], units: &mut [UnitState]) -> bool {
+    pub(super) fn serve_with_rotors_alone(
+        &self,
+        wrench: &[f32; 4],
+        units: &mut [UnitState],
+        is_whole: bool,
+    ) -> bool {
         let (mut matrix, mut lost) = ([0.0; 10], [0.0; 4]);
         for (index, (unit, table)) in rolled(units.iter_mut().zip(self.tables.units).enumerate()) {
             unit.efforts = self.least_norm(table, wrench);
             unit.columns = self.columns(table);
-            if unit.rotors.are_both() {
-                let [by_thrust, by_torque] = self.tables.slopes_of(index);
+            if let Some(pair) = self.pair_of(index, unit) {
+                let [by_thrust, by_torque] = pair.mean_square_slopes;
                 Products::<VERTICAL>::add(&unit.columns, [by_thrust, 0.0, by_torque], &mut matrix);
                 continue;
             }
@@ -49,14 +56,14 @@ impl<P: Quantity, I: Inverse, S: AllocationMethod<P>, const VERTICAL: bool> Fram
             unit.stop_failed();
         }
         let mut lambda = [0.0; 4];
-        for _ in rolled(0..TANGENTS) {
+        for _ in rolled(0..TANGENTS[usize::from(!is_whole)]) {
             let (mut system, mut missed) = (matrix, lost);
             for (index, unit) in rolled(units.iter_mut().enumerate()) {
                 let Some(side) = unit.rotors.single() else {
                     continue;
                 };
                 let throttle = unit.throttles[side];
-                let [value, slope, half] = self.tables.singles_of(index)[side].expansion(throttle);
+                let [value, slope, half] = self.tables.alone(index, side).expansion(throttle);
                 let back = unit.targets[side] - throttle;
                 unit.slopes[side] = slope;
                 unit.curvature_per_slope = divided(4.0 * half[0], larger(slope[0], LEAST_RISE));
@@ -92,22 +99,28 @@ impl<P: Quantity, I: Inverse, S: AllocationMethod<P>, const VERTICAL: bool> Fram
         let is_regular = lambda.iter().all(|row| row.abs() <= UNSERVED);
         let mut is_served = is_regular;
         for (index, unit) in rolled(units.iter_mut().enumerate()) {
-            if unit.rotors.are_both() {
+            if let Some(pair) = self.pair_of(index, unit) {
                 if is_regular {
-                    let [by_thrust, by_torque] = self.tables.slopes_of(index);
+                    let [by_thrust, by_torque] = pair.mean_square_slopes;
                     let gain = Products::<VERTICAL>::gains(&unit.columns, &lambda);
                     unit.efforts[0] += by_thrust * gain[0];
                     unit.efforts[1] += by_torque * gain[1];
                 }
                 is_served &= self.invert_apart(index, unit);
             } else if let Some(side) = unit.rotors.single() {
-                let [given, ..] = self.tables.singles_of(index)[side].expansion(unit.throttles[side]);
+                let [given, ..] = self.tables.alone(index, side).expansion(unit.throttles[side]);
                 is_served &= self.gives(given, unit);
             } else {
                 unit.efforts = [0.0; 2];
             }
         }
         is_served
+    }
+
+    /// The pair of a unit both of whose rotors turn.
+    #[inline(always)]
+    fn pair_of(&self, index: usize, unit: &UnitState) -> Option<&PairKind<K::Quantity, K::Inverse>> {
+        self.tables.pair_of(index).filter(|_| unit.rotors.are_both())
     }
 
     /// [`Frame::invert`], once in the code for both places.
