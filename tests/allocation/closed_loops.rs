@@ -8,7 +8,6 @@
 use std::path::Path;
 
 use mixer_compiler::airframe::GRAVITY;
-use mixer_compiler::model::Physics;
 use mixer_rt::{Conditions, Health, Wrench};
 use mixer_setpoints::Random;
 use mixer_tests::frames::{self, zoo::Zoo};
@@ -108,10 +107,7 @@ fn fly(
 ) -> Flown {
     let compiled = &frame.compiled;
     let airframe = &compiled.airframe;
-    let physics = Physics {
-        airframe,
-        map: &compiled.maps[0],
-    };
+    let physics = compiled.physics();
     let conditions =
         Conditions::at_voltage(airframe.reference_v() as f32).in_air(airframe.reference_density() as f32);
     let mass_kg = weight_n / GRAVITY;

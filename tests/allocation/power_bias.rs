@@ -28,7 +28,7 @@ fn efforts(frame: &Frame, answer: &Answer) -> Vec<[f64; 2]> {
     let channels = frame.physics.channels.iter();
     channels
         .map(|pair| pair.map(|channel| f64::from(answer.throttle[channel])))
-        .map(|throttles| frame.physics.pair.efforts(throttles))
+        .map(|throttles| frame.physics.pairs[0].efforts(throttles))
         .collect()
 }
 

@@ -135,7 +135,7 @@ fn saturate(frame: &Frame, random: &mut Random, count: usize, tally: &mut Tally)
 /// spin, their negative share of the others.
 fn least_level_thrust(frame: &Frame, most: f64) -> f64 {
     const STEPS: usize = 100;
-    let pair = &frame.physics.pair;
+    let pair = &frame.physics.pairs[0];
     let units = frame.physics.units();
     let clockwise = frame
         .compiled
