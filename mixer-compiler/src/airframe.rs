@@ -122,6 +122,20 @@ impl Airframe {
         }
     }
 
+    /// Takes tolerances that the file does not state down to a thousandth of the least of the units' `scales`, their largest
+    /// thrusts and torques, N and N m: on small vehicles the defaults are much.
+    pub(crate) fn fit_tolerances(&mut self, scales: &[[f64; 2]]) {
+        const SHARE: f64 = 1e-3;
+        let stated =
+            ["thrust_tolerance_n", "torque_tolerance_nm"].map(|key| self.states(&format!("inverse.{key}")));
+        let inverse = &mut self.inverse;
+        let tolerances = [&mut inverse.thrust_tolerance_n, &mut inverse.torque_tolerance_nm];
+        for (k, tolerance) in tolerances.into_iter().enumerate().filter(|(k, _)| !stated[*k]) {
+            let sizes = scales.iter().map(|scale| SHARE * scale[k]);
+            *tolerance = sizes.filter(|size| *size > 0.0).fold(*tolerance, f64::min);
+        }
+    }
+
     /// The name as a Rust module: `isae_x8`.
     pub fn module_name(&self) -> String {
         name::module(&self.name)

@@ -58,7 +58,7 @@ pub struct Flywheel {
     pub hover_throttle: f64,
     /// w, rad/s, estimated from the largest thrust, within some 15 %.
     pub speed_rad_s: f64,
-    /// Q, N m: by its slope over the throttle, of a pair as one rotor turns faster and the other slower.
+    /// Q, N m: of a pair by the slope of its torque as one rotor turns faster and the other slower.
     pub torque_nm: f64,
     /// T, s.
     pub lead_s: f64,
@@ -86,16 +86,19 @@ impl Flywheel {
     /// A rotor of a kind at the throttle of hover.
     fn at(view: &View<'_, Kind<'_>>, hover: f64, inertia_kg_m2: Option<f64>) -> Option<Flywheel> {
         let map = PairMap::of_kind(view.of, &view.throttle);
-        let [hover_n, full_n] = [hover, view.throttle.max].map(|throttle| map.efforts([throttle; 2])[0]);
+        let [hover_n, single_nm] = map.efforts([hover; 2]);
+        let [full_n, _] = map.efforts([view.throttle.max; 2]);
         let [_, [by_upper, by_lower]] = map.jacobian([hover; 2]);
-        // The mean slope of a rotor's torque, and the thrust of a unit over that of a rotor alone.
-        let (slope, over_alone) = match view.of {
-            Kind::Pair(_) => (0.5 * (by_lower - by_upper), PAIR_OVER_ALONE),
-            Kind::SingleRotor(_) => (by_upper, 1.0),
-        };
         let share = ohmic_share(exponent(view), hover);
-        // Q goes with w^2, and w with the power 1 / (1 + s) of the throttle.
-        let torque_nm = 0.5 * slope * hover * (1.0 + share);
+        // The torque of a rotor, and the thrust of a unit over that of a rotor alone. Of a pair the slope of the torque is
+        // known: Q goes with w^2, and w with the power 1 / (1 + s) of the throttle.
+        let (torque_nm, over_alone) = match view.of {
+            Kind::Pair(_) => (
+                0.25 * (by_lower - by_upper) * hover * (1.0 + share),
+                PAIR_OVER_ALONE,
+            ),
+            Kind::SingleRotor(_) => (single_nm, 1.0),
+        };
         let diameter_m = (full_n / over_alone / LOADING_N_M2).sqrt();
         let speed_rad_s = 2.0 * TIP_M_S / diameter_m * (hover_n / full_n).sqrt();
         let mass_kg = MASS_KG_M2 * diameter_m * diameter_m;

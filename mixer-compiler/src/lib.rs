@@ -71,7 +71,8 @@ pub use {
 /// All faults that were found, and with faults of later stages the warnings, one of which may be
 /// why. Faults of the file itself end the compilation, and so do those of each later stage.
 pub fn compile(source: &Source) -> Result<Compiled, Diagnostics> {
-    let airframe = Airframe::read(source)?;
+    let mut airframe = Airframe::read(source)?;
+    airframe.fit_tolerances(&model::scales(&airframe, [1.0; 2]));
     compile_airframe(source, airframe.clone()).map_err(|mut faults| {
         faults.extend(plausible::warnings_of_refused(&airframe));
         Diagnostics::new(source.clone(), faults)

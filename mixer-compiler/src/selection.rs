@@ -160,13 +160,7 @@ pub(crate) fn tolerance(
         of_pairs = [0, 1].map(|k| of_pairs[k].max(certificate.stated[k]));
     }
     if airframe.pairs.is_empty() {
-        let allowed = airframe.inverse.tolerances();
-        let least = |k: usize| {
-            sizes
-                .iter()
-                .fold(allowed[k], |least, size| least.min(OF_SIZE * size[k]))
-        };
-        efforts = [least(0), least(1)];
+        efforts = correction.tolerance_at_reference(airframe);
     }
     let factors = law::largest_factors(airframe);
     let of_singles = [0, 1].map(|k| efforts[k] * factors[k]);
@@ -187,9 +181,6 @@ pub(crate) fn tolerance(
     let stated = [0, 1].map(|k| units().fold(0.0, |most: f64, stated| most.max(stated[k])));
     (tables::tolerance_table(efforts, wrench), stated)
 }
-
-/// Share of its largest efforts that a single rotor may miss at most, whatever the file allows.
-const OF_SIZE: f64 = 1e-3;
 
 /// Rounding of sums in f32 as a share of full efforts.
 const ROUNDING: f64 = 4e-6;
