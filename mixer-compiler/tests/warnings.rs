@@ -122,3 +122,59 @@ fn lines_are_for_logs() {
         "{lines:?}"
     );
 }
+
+/// Numbers in another unit, and a throttle that was made linear, are told of a single rotor as of a pair, by its name.
+#[test]
+fn a_mistake_is_told_of_every_kind() {
+    type Mistake = (&'static str, &'static str, f64);
+    const MISTAKES: [Mistake; 11] = [
+        ("gram-force", "thrust_n", 101.972),
+        ("kilogram-force", "thrust_n", 0.101_972),
+        ("pound-force", "thrust_n", 0.224_809),
+        ("millinewtons", "thrust_n", 1000.0),
+        ("torque times 10", "torque_nm", 10.0),
+        ("newton centimetres", "torque_nm", 100.0),
+        ("newton millimetres", "torque_nm", 1000.0),
+        ("a tenth of the torque", "torque_nm", 0.1),
+        ("kilogram-force metres", "torque_nm", 0.101_972),
+        ("gram-force centimetres", "torque_nm", 10_197.2),
+        ("a linear throttle", "thrust_n", f64::NAN),
+    ];
+    // Rules of every kind; others are of pairs, or of the frame.
+    const OF_KINDS: [Code; 4] = [
+        Code::PairUnits,
+        Code::HighIdle,
+        Code::PairShape,
+        Code::WideTolerance,
+    ];
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("airframes/y4.toml");
+    let text = fs::read_to_string(path).unwrap();
+    for (name, key, factor) in MISTAKES {
+        let told = |word: &str, of: &str, linear: &[usize]| -> BTreeSet<Code> {
+            let mut file: toml::Table = text.parse().unwrap();
+            let terms = file[word][0][key].as_array_mut().unwrap();
+            let full: f64 = terms.iter().map(|term| term.as_float().unwrap()).sum();
+            for (k, term) in terms.iter_mut().enumerate() {
+                let value = match factor.is_nan() {
+                    true if linear.contains(&k) => full / linear.len() as f64,
+                    true => 0.0,
+                    false => factor * term.as_float().unwrap(),
+                };
+                *term = toml::Value::Float(value);
+            }
+            let source = Source::new("y4.toml", toml::to_string(&file).unwrap());
+            let found = match mixer_compiler::compile(&source) {
+                Ok(compiled) => mixer_compiler::lint(&compiled),
+                Err(refused) => refused,
+            };
+            let is_told = |fault: &&mixer_compiler::Diagnostic| {
+                OF_KINDS.contains(&fault.code) && fault.message.starts_with(&format!("{word} \"{of}\": "))
+            };
+            found.faults().iter().filter(is_told).map(|fault| fault.code).collect()
+        };
+        // The terms of u and of l, and that of x.
+        let (pair, rotor) = (told("pair", "rear", &[7, 8]), told("rotor", "front", &[0]));
+        assert!(!rotor.is_empty(), "{name}: of a single rotor nothing is told");
+        assert_eq!(pair, rotor, "{name}");
+    }
+}
