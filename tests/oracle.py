@@ -13,7 +13,8 @@ It shares nothing with the compiler but the file: its own reading of the file, i
 inverse of the pair's map and laws of voltage and density, in double precision, standard library only (Python 3.11 or later).
 
 A single rotor (`rotor = ".."`) is a pair whose lower rotor is always out: its torque is not in proportion to its thrust, which
-M+ takes it for, so that its least-norm efforts are those of the wrench from which the difference is taken.
+M+ takes it for, so that its least-norm efforts are those of the wrench from which the difference is taken. The mixer goes from M+ to
+the nearest throttles instead, so that on frames with single rotors the wrench is judged, and efforts within 1 % of a unit's largest.
 
 What it asks of every row:
   * throttles within [min, max]; one row per setpoint
@@ -164,6 +165,11 @@ class Airframe:
                     asked[axis] -= self.m[axis][n + unit] * (torque - wanted[n + unit])
                 wanted[n + unit] = torque
         return wanted
+
+    def room(self, unit):
+        """How far efforts may be from those of least norm."""
+        near = 0.01 if any(kappa is not None for kappa in self.kappa) else 0.0
+        return [max(1.001 * tolerance, near * size) for tolerance, size in zip(self.tolerance, self.size[unit])]
 
     def largest(self, unit):
         """The largest thrust and torque of a unit, which lie on the border of the box of throttles."""
@@ -380,8 +386,11 @@ def judge_row(airframe, request, conditions, throttles, achieved, saturation, fa
             wanted = [w + share * part for w, part in zip(wanted, shift)]
         for i in range(n):
             off = [abs(efforts[i] - wanted[i]), abs(efforts[n + i] - wanted[n + i])]
-            if off[0] > airframe.tolerance[0] * 1.001 or off[1] > airframe.tolerance[1] * 1.001:
+            if any(miss > room for miss, room in zip(off, airframe.room(i))):
                 faults.append(f"unit {i} is {off[0]:.3g} N, {off[1]:.3g} N m off its attainable least-norm efforts")
+        for axis, asked, got, allowed in zip(AXES, request, truth, budget):
+            if airframe.axes[AXES.index(axis)] and abs(asked - got) > allowed:
+                faults.append(f"{axis} is {got!r}, attainable by least norm and asked {asked!r}")
         # A torque asked on an axis that the airframe does not serve is missed and flagged, whatever is delivered.
         served = sum(3 << 2 * axis for axis in range(4) if airframe.axes[axis])
         if saturation & served:

@@ -21,7 +21,7 @@ mod by_build_script {
 }
 
 fn main() {
-    println!("{} {}", by_macro::isae_x8::TABLES.pair.thrust.0[0], by_build_script::isae_x8::TABLES.pair.thrust.0[0]);
+    println!("{} {}", by_macro::isae_x8::TABLES.kinds.pair.thrust.0[0], by_build_script::isae_x8::TABLES.kinds.pair.thrust.0[0]);
 }
 "#;
 

@@ -1,6 +1,6 @@
 //! The result of a compilation.
 
-use crate::airframe::Airframe;
+use crate::airframe::{Airframe, Basis};
 use crate::diagnostic::source::Source;
 use crate::inverse::evaluator::Evaluator;
 use crate::model::effectiveness::Effectiveness;
@@ -76,6 +76,12 @@ impl Compiled {
     /// [`model::mean`](crate::model::mean) of the units' maps.
     pub fn mean_map(&self) -> PairMap {
         model::mean(&self.airframe, &self.maps)
+    }
+
+    /// How pairs are inverted, and their basis; `None` where no unit is one.
+    pub fn inverse(&self) -> Option<(Evaluator, Basis)> {
+        let evaluator = self.of_pairs.first()?.evaluator;
+        Some((evaluator, self.airframe.pairs.first()?.basis))
     }
 
     /// What holds of all pairs; `None` where no unit is one.

@@ -17,8 +17,9 @@
 
 use serde::Serialize;
 
-use crate::airframe::{Airframe, GRAVITY, Kind, TYPICAL_EXPONENT, View};
+use crate::airframe::{Airframe, GRAVITY, Kind, TYPICAL_EXPONENT};
 use crate::model::{PairMap, equal_throttle, maps};
+use crate::view::View;
 
 /// Throttle at which a motor has the voltage's exponent that least squares over a bench's map finds: large thrusts weigh
 /// most there. Found on maps of ten systems at two voltages, one after the other simulated.

@@ -21,6 +21,7 @@ mod modules {
     pub mod quantity;
     pub mod spec;
     pub mod tables;
+    pub mod view;
 }
 
 mod allocation;
@@ -41,7 +42,7 @@ use modules::*;
 #[cfg(feature = "unstable")]
 pub use modules::*;
 
-use airframe::{Airframe, Pair, View};
+use airframe::{Airframe, Pair};
 use allocation::{closed_form, thrust_range};
 use model::PairMap;
 use model::effectiveness::Effectiveness;
@@ -50,6 +51,7 @@ use model::law::CorrectionTables;
 use proc_macro2::TokenStream;
 use selection::Selected;
 use tables::{MixerTables, Parts};
+use view::View;
 
 pub use crate::diagnostic::source::Source;
 pub use crate::diagnostic::{Code, Diagnostic, Diagnostics, Record, Severity};

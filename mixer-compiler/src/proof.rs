@@ -17,9 +17,10 @@ mod taylor;
 
 use std::collections::BinaryHeap;
 
-use crate::airframe::{Pair, View};
+use crate::airframe::Pair;
 use crate::proof::residual::Residual;
 use crate::tables::UnitMap;
+use crate::view::View;
 use cell::{Subject, ThrottleCell};
 use expansion::Monomials;
 

@@ -324,10 +324,11 @@ impl Rotors<'_> {
         Some((f_u + f_l) / map.efforts([max, max])[0])
     }
 
-    /// Throttle of all rotors that carries the weight; `None` without a mass, or where none does.
+    /// Throttle of all rotors that carries the weight; `None` without a mass, or where none from idle on does.
     pub(crate) fn hover_throttle(&self) -> Option<f64> {
         let [k_f, _] = self.airframe.voltage_factors(self.voltage_v);
-        equal_throttle(self.airframe, self.maps, self.airframe.weight_n()? / k_f)
+        let hover = equal_throttle(self.airframe, self.maps, self.airframe.weight_n()? / k_f);
+        hover.filter(|hover| *hover > self.airframe.throttle.min)
     }
 }
 

@@ -4,7 +4,7 @@ mod refusal;
 
 use mixer_rt::tables::Tolerance;
 
-use crate::airframe::{Airframe, Pair, Unit, View};
+use crate::airframe::{Airframe, Pair, Unit};
 use crate::diagnostic::Diagnostic;
 use crate::inverse::evaluator::Evaluator;
 use crate::inverse::fit::{Inversion, Samples};
@@ -14,6 +14,7 @@ use crate::model::{PairMap, scales};
 use crate::proof::residual::Residual;
 use crate::proof::{self, Certificate, CorrectionBounds, Patience};
 use crate::tables::{self, UnitMap};
+use crate::view::View;
 
 /// An evaluator with its table and what is known about it.
 #[derive(Clone, Debug)]

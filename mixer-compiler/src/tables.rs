@@ -19,11 +19,12 @@ use mixer_rt::{
     },
 };
 
-use crate::airframe::{self, Airframe, View};
+use crate::airframe::{self, Airframe};
 use crate::inverse::table::InverseTable;
 use crate::model::PairMap;
 use crate::model::effectiveness::Effectiveness;
 use crate::model::law::{CorrectionTables, LawTable};
+use crate::view::View;
 
 use alone::{curve_table, rotors_alone};
 pub(crate) use part::{Part, identifier};

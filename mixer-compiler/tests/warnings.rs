@@ -170,7 +170,12 @@ fn a_mistake_is_told_of_every_kind() {
             let is_told = |fault: &&mixer_compiler::Diagnostic| {
                 OF_KINDS.contains(&fault.code) && fault.message.starts_with(&format!("{word} \"{of}\": "))
             };
-            found.faults().iter().filter(is_told).map(|fault| fault.code).collect()
+            found
+                .faults()
+                .iter()
+                .filter(is_told)
+                .map(|fault| fault.code)
+                .collect()
         };
         // The terms of u and of l, and that of x.
         let (pair, rotor) = (told("pair", "rear", &[7, 8]), told("rotor", "front", &[0]));

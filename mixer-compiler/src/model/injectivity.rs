@@ -12,12 +12,13 @@
 //! An invertible linear change of the efforts changes nothing about injectivity. All signs are
 //! proven by [`Bivariate`].
 
-use crate::airframe::{Basis, Pair, View, value_of_terms};
+use crate::airframe::{Basis, Pair, value_of_terms};
 use crate::bounds::interval::Interval;
 use crate::diagnostic::{Code, Diagnostic, rounded};
 use crate::model::PairMap;
 use crate::model::polynomial::{Bivariate, ThrottleBox};
 use crate::model::wake::{self, Wake};
+use crate::view::View;
 
 /// The forward map with coefficients that are enclosed by intervals, for proofs. For its values see
 /// [`PairMap`].

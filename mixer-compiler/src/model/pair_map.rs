@@ -53,8 +53,8 @@ pub fn mean(airframe: &Airframe, maps: &[PairMap]) -> PairMap {
     mean
 }
 
-/// The throttle of all rotors alike at which units of these maps lift `thrust_n` N at the reference voltage; `None` where none
-/// of the range does.
+/// The throttle of all rotors alike at which units of these maps lift `thrust_n` N at the reference voltage, from 0 on; `None`
+/// where none does.
 pub fn equal_throttle(airframe: &Airframe, maps: &[PairMap], thrust_n: f64) -> Option<f64> {
     let lift = |throttle: f64| -> f64 {
         let units = airframe.units.iter().zip(maps);
@@ -62,15 +62,16 @@ pub fn equal_throttle(airframe: &Airframe, maps: &[PairMap], thrust_n: f64) -> O
             .map(|(unit, map)| -unit.axis[2] * map.efforts([throttle; 2])[0])
             .sum()
     };
-    let Throttle { min, max } = airframe.throttle;
-    let is_within = lift(min) < thrust_n && thrust_n < lift(max);
-    is_within.then(|| bisected([min, max], |throttle| lift(throttle) >= thrust_n))
+    let max = airframe.throttle.max;
+    (thrust_n < lift(max)).then(|| bisected([0.0, max], |throttle| lift(throttle) >= thrust_n))
 }
 
 /// The largest thrust (N) and torque (N m) of each unit at `[k_f, k_Q]`.
 pub fn scales(airframe: &Airframe, factors: [f64; 2]) -> Vec<[f64; 2]> {
-    let scale = |view: crate::airframe::View<'_, _>| PairMap::of_kind(view.of, &view.throttle).scale();
-    let scales: Vec<[f64; 2]> = airframe.views().map(scale).collect();
+    let scales = airframe
+        .views()
+        .map(|view| PairMap::of_kind(view.of, &view.throttle).scale());
+    let scales: Vec<[f64; 2]> = scales.collect();
     let units = airframe.units.iter();
     units
         .map(|unit| [0, 1].map(|k| factors[k] * scales[unit.kind][k]))

@@ -3,10 +3,11 @@
 use mixer_rt::tables::REQUEST_LIMIT;
 
 use super::rule::{KindFacts, Rule};
-use crate::airframe::{Airframe, Axis, Kind, View};
+use crate::airframe::{Airframe, Axis, Kind};
 use crate::diagnostic::{Code, Diagnostic, number, rounded};
 use crate::model::effectiveness::Effectiveness;
 use crate::model::{PairMap, law, scales};
+use crate::view::View;
 
 /// Share of a unit's largest effort above which a tolerance is a mistake.
 const WIDE: f64 = 0.01;

@@ -1,9 +1,10 @@
 //! The form of a rule, and the facts that rules read.
 
-use crate::airframe::{Airframe, Axis, Kind, View};
+use crate::airframe::{Airframe, Axis, Kind};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::model::PairMap;
 use crate::model::effectiveness::Effectiveness;
+use crate::view::View;
 
 /// Points per edge of the throttle box at which a unit's efforts are looked at.
 const POINTS: usize = 128;

@@ -1,10 +1,11 @@
 //! The refusal of a tolerance that no evaluator meets, with what is proven.
 
-use crate::airframe::{Method, Pair, View};
+use crate::airframe::{Method, Pair};
 use crate::diagnostic::{Code, Diagnostic, number, rounded_up};
 use crate::inverse::evaluator::Evaluator;
 use crate::model::injectivity::EnclosedPairMap;
 use crate::proof::Certificate;
+use crate::view::View;
 
 /// An idle below this many times the least at which the map can be inverted is near the fold, where
 /// the inverse is steep. Real maps compile from 1.03 times on.

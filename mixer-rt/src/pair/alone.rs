@@ -1,13 +1,10 @@
 //! A rotor alone: a single rotor, or one whose partner is out.
 
 use super::inverse::ThrottleRange;
-use crate::{clamp, divided, divisor, larger, rolled, sqrt};
+use crate::{divided, larger, sqrt};
 
 /// Least thrust per throttle that is divided by, N.
 pub(crate) const LEAST_RISE: f32 = 1e-6;
-
-/// Newton steps to the throttle of a thrust. The tangents that follow make up for what is left.
-const STEPS: u32 = 2;
 
 /// A rotor alone, the other one of its unit at rest: its thrust (N) and torque (N m, signed as on
 /// the bench) as polynomials of its throttle without a constant, coefficients from the fourth
@@ -48,17 +45,13 @@ impl RotorAlone {
         [[f[0], q[0]], [f[1], q[1]], [f[2], q[2]]]
     }
 
-    /// About the throttle of a thrust (N), or the nearest one of the range, from where thrust is in proportion to its
-    /// square.
+    /// About the throttle of a thrust (N), within the range: that of the parabola in its middle.
     #[inline(never)]
     pub(crate) fn throttle(&self, range: &ThrottleRange, thrust: f32) -> f32 {
-        let [most, _] = self.efforts(range.max);
-        let share = clamp(divided(thrust, divisor(most)), 0.0, 1.0);
-        let mut throttle = range.clamp(range.max * sqrt(share));
-        for _ in rolled(0..STEPS) {
-            let [[f, _], [slope, _], _] = self.expansion(throttle);
-            throttle = range.clamp(throttle + divided(thrust - f, larger(slope, LEAST_RISE)));
-        }
-        throttle
+        let middle = 0.5 * (range.min + range.max);
+        let [[f, _], [slope, _], [half, _]] = self.expansion(middle);
+        let off = thrust - f;
+        let root = sqrt(larger(slope * slope + 4.0 * half * off, 0.0));
+        range.clamp(middle + divided(2.0 * off, larger(slope + root, LEAST_RISE)))
     }
 }

@@ -10,14 +10,6 @@ mod typical;
 use serde::Serialize;
 
 use mixer_compiler::Compiled;
-use mixer_compiler::airframe::Basis;
-use mixer_compiler::evaluator::Evaluator;
-
-/// How pairs are inverted; `None` where no unit is one.
-fn inverse(compiled: &Compiled) -> Option<(Evaluator, Basis)> {
-    let evaluator = compiled.of_pairs.first()?.evaluator;
-    Some((evaluator, compiled.airframe.pairs.first()?.basis))
-}
 
 /// What counts are of.
 pub const TARGET: &str = "Cortex-M4F, counted in QEMU";
@@ -64,7 +56,7 @@ impl Cost {
         let delivered = typical::delivered(compiled);
         let attainable = typical::attainable(compiled);
         let all = |one: Option<u32>| one.map(|one| one * pairs as u32);
-        let inverse = inverse(compiled);
+        let inverse = compiled.inverse();
         let inverse_instructions = inverse.and_then(|(evaluator, basis)| evaluator.instructions(basis));
         let inverse_cycles = inverse.and_then(|(evaluator, basis)| evaluator.cost(basis));
         Cost {

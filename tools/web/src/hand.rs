@@ -2,8 +2,9 @@
 //! units' efforts out, beside those of a mixer that takes the rotors for isolated.
 
 use cargo_mixer::rows;
-use mixer_compiler::airframe::{Airmode, Axis, Correction, Kind, Unit, View};
+use mixer_compiler::airframe::{Airmode, Axis, Correction, Kind, Unit};
 use mixer_compiler::model::{PairMap, scales};
+use mixer_compiler::view::View;
 use mixer_facts::checklist::Checklist;
 use mixer_files::report::study::Study;
 use mixer_rt::{Conditions, Wrench};

@@ -95,7 +95,7 @@ pub(super) fn with_rotors_out(compiled: &Compiled) -> Option<u32> {
 /// Least norm of all units, so many of which have one rotor or none.
 fn least_norm(compiled: &Compiled, alone: usize) -> Option<u32> {
     let airframe = &compiled.airframe;
-    let pair = match super::inverse(compiled) {
+    let pair = match compiled.inverse() {
         Some((evaluator, basis)) => {
             evaluator.instructions(basis)? + forward(basis) + PER_UNIT + kind(compiled)
         }
@@ -114,7 +114,7 @@ fn interior(compiled: &Compiled, slacks: u32) -> u32 {
     let n = compiled.tables.units.len() as u32;
     let unit = ITERATION_UNIT[usize::from(!compiled.tables.is_vertical)];
     // Additional instructions for the derivatives of the basis.
-    let more = match super::inverse(compiled) {
+    let more = match compiled.inverse() {
         Some((_, Basis::Quartic)) => 45,
         Some((_, Basis::Cubic)) => 10,
         Some((_, Basis::Biquadratic)) | None => 0,
@@ -144,7 +144,7 @@ fn forward(basis: Basis) -> u32 {
 }
 
 fn closed_form(compiled: &Compiled, table: &ClosedFormTable) -> Option<u32> {
-    let (evaluator, basis) = super::inverse(compiled)?;
+    let (evaluator, basis) = compiled.inverse()?;
     let evaluator = evaluator.instructions(basis)?;
     let n = table.units.len() as u32;
     let inverses = n * (evaluator + forward(basis));

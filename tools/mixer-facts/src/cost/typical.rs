@@ -82,7 +82,7 @@ impl Overhead {
         };
         let corrections = airframe.voltage.iter().chain(&airframe.air).count() as u32;
         let kind = if airframe.is_unlike() { PER_KIND } else { 0 };
-        let pair = match super::inverse(compiled) {
+        let pair = match compiled.inverse() {
             Some((evaluator, basis)) => self.per_unit + evaluator.instructions(basis)? + kind,
             None => 0,
         };
