@@ -66,8 +66,8 @@ pub(crate) fn allocate<K: Kinds, S: AllocationMethod, const VERTICAL: bool>(
     if frame.serve(wrench, units, is_whole) {
         return is_whole;
     }
-    if !frame.cut(wrench, units, is_whole) && is_whole {
-        frame.level(wrench[3], units);
+    if !frame.cut(wrench, units, is_whole) {
+        frame.guard(wrench, units, is_whole);
     }
     false
 }

@@ -12,6 +12,7 @@ pub use crate::allocate::closed_form::{
 };
 pub use crate::allocate::interior::MOST_ITERATIONS;
 pub use crate::allocate::least_norm;
+pub use crate::allocate::least_norm::GUARD_LEAST_NORMS;
 pub use crate::allocate::priorities::{Airmode, Priorities, REQUEST_LIMIT};
 pub use crate::allocate::unit::UnitState;
 pub use crate::arithmetic::{Scalar, sqrt};

@@ -10,6 +10,13 @@ use crate::layout::Unit;
 use crate::pair::Kinds;
 use crate::rolled;
 
+/// Halvings of the share of roll and pitch, and of that of yaw, in [`Frame::guard`]: every one is a least norm more in the
+/// stated bound.
+const HALVINGS: [u32; 2] = [4, 2];
+
+/// Times that the guard runs least norm.
+pub const GUARD_LEAST_NORMS: u32 = HALVINGS[0] + HALVINGS[1] + 1;
+
 impl<K: Kinds, S: AllocationMethod, const VERTICAL: bool> Frame<'_, '_, K, S, VERTICAL> {
     /// Efforts of least norm of a unit for a wrench (N m, N), at the reference voltage.
     #[inline(always)]
@@ -57,13 +64,39 @@ impl<K: Kinds, S: AllocationMethod, const VERTICAL: bool> Frame<'_, '_, K, S, VE
         (given[0] - asked[0]).abs() <= thrust && (given[1] - asked[1]).abs() <= torque
     }
 
-    /// The guard for whole frames, where the interior point method has not met the rows: least norm for
-    /// level flight at the attainable thrust nearest the one asked. It is sound whatever the sets, for it is
-    /// delivered. Where a frame has no level flight by least norm, the method's answer stays.
+    /// The guard, where the interior point method has not met the rows: the largest share of roll and pitch, then of
+    /// yaw, that least norm gives at the thrust asked, of whole frames at the nearest one with level flight. It is sound
+    /// whatever the sets, for it is delivered. Where least norm gives no level flight, the method's answer stays.
     #[inline(never)]
-    pub(super) fn level(&self, thrust: f32, units: &mut [UnitState]) {
-        let [least, most] = self.tables.level_n.map(|end| end * self.factors[0]);
-        if self.serve(&[0.0, 0.0, 0.0, clamp(thrust, least, most)], units, true) {
+    pub(super) fn guard(&self, wrench: &[f32; 4], units: &mut [UnitState], is_whole: bool) {
+        let [roll, pitch, yaw, mut thrust] = *wrench;
+        if is_whole {
+            let [least, most] = self.tables.level_n.map(|end| end * self.factors[0]);
+            thrust = clamp(thrust, least, most);
+        }
+        let mut kept = [0.0; 2];
+        for (axes, halvings) in HALVINGS.into_iter().enumerate() {
+            let mut step = 1.0;
+            for _ in rolled(0..halvings) {
+                step *= 0.5;
+                let mut more = kept;
+                more[axes] += step;
+                let [torque, turn] = more;
+                if self.serve(
+                    &[torque * roll, torque * pitch, turn * yaw, thrust],
+                    units,
+                    is_whole,
+                ) {
+                    kept = more;
+                }
+            }
+        }
+        let [torque, turn] = kept;
+        if self.serve(
+            &[torque * roll, torque * pitch, turn * yaw, thrust],
+            units,
+            is_whole,
+        ) {
             return;
         }
         for (index, state) in rolled(units.iter_mut().enumerate()) {

@@ -6,7 +6,7 @@
 //! the iterations of the interior point method: a product of their largest number and the
 //! cost of one (`cargo counts`). The tests hold the sum to the counts of whole mixers.
 
-use mixer_rt::tables::{Facets, MOST_ITERATIONS, Outline};
+use mixer_rt::tables::{Facets, GUARD_LEAST_NORMS, MOST_ITERATIONS, Outline};
 
 use mixer_compiler::Compiled;
 use mixer_compiler::airframe::Basis;
@@ -78,18 +78,20 @@ const ROTOR_ALONE: u32 = 800;
 pub(super) fn bound(compiled: &Compiled) -> Option<u32> {
     match &compiled.tables.closed_form {
         Some(table) => closed_form(compiled, table),
-        // Least norm of the request, and of level flight.
-        None => {
-            let alone = compiled.airframe.single_units();
-            Some(2 * least_norm(compiled, alone)? + per_mix(compiled) + interior(compiled, 0))
-        }
+        None => general(compiled, compiled.airframe.single_units(), 0),
     }
 }
 
 /// The bound with any number of rotors out, of every frame.
 pub(super) fn with_rotors_out(compiled: &Compiled) -> Option<u32> {
-    let units = compiled.airframe.units.len();
-    Some(least_norm(compiled, units)? + per_mix(compiled) + interior(compiled, 1))
+    general(compiled, compiled.airframe.units.len(), 1)
+}
+
+/// Least norm of the request, the interior point method with so many slacks beside that of a reserve, and the guard, where
+/// so many units have one rotor or none.
+fn general(compiled: &Compiled, alone: usize, slacks: u32) -> Option<u32> {
+    let least_norms = (1 + GUARD_LEAST_NORMS) * least_norm(compiled, alone)?;
+    Some(least_norms + per_mix(compiled) + interior(compiled, slacks))
 }
 
 /// Least norm of all units, so many of which have one rotor or none.
