@@ -14,7 +14,7 @@ use self::air::BenchAir;
 use self::header::Columns;
 use self::read::{Fault, Log, RefusedRow, Sample, refusal_notes};
 use self::sign::{SignPolicy, Signs};
-use self::units::Quantity;
+use self::units::{Quantity, Scale};
 use crate::refusal::Refusal;
 use crate::rotor::Turning;
 use crate::statistics::{extent, mean_of_finite, median};
@@ -60,10 +60,10 @@ pub struct Point {
     pub imbalance: f64,
     /// Electrical power of the whole, W; NaN where not measured.
     pub power_w: f64,
-    /// Power of the shafts, W, and speed of one rotor that turns alone, revolutions per minute; NaN where not measured.
+    /// Power of the shafts, W; NaN where not measured.
     pub shaft_w: f64,
-    /// As above.
-    pub rpm: f64,
+    /// Speed of the upper rotor, or of the only one, and of the lower one, revolutions per minute; likewise.
+    pub rpm: [f64; 2],
     /// Thrust of the upper and of the lower rotor, N, and torque likewise, N m, as their load cells have
     /// them; NaN where they have none.
     pub cells: [f64; 4],
@@ -132,6 +132,9 @@ pub struct Bench {
     /// Whether the record of a command seems to drift, so that neither rows nor the shape can be judged.
     #[serde(skip)]
     pub record_drifts: bool,
+    /// Whether a throttle is a speed that the controller holds.
+    #[serde(skip)]
+    pub holds_speed: bool,
     /// Options that had nothing to work on in this file.
     #[serde(skip)]
     pub idle_options: Vec<String>,
@@ -295,10 +298,9 @@ impl Turned {
         };
         Ok(Point {
             shaft_w: self.rotors.iter().map(shaft).sum(),
-            rpm: if alone {
-                sample.speed[self.rotors[0]]
-            } else {
-                f64::NAN
+            rpm: match alone {
+                true => [sample.speed[self.rotors[0]], f64::NAN],
+                false => sample.speed,
             },
             line: sample.line,
             u,
@@ -408,6 +410,11 @@ pub fn prepare(log: Log, how: &Preparation) -> Result<Bench, Refusal> {
     let alone = turned.kind == BenchKind::SingleRotor && turned.two_throttles;
     Ok(Bench {
         no_power: columns.no_power(),
+        holds_speed: columns[Quantity::Throttle]
+            .rotors
+            .iter()
+            .flatten()
+            .any(|column| matches!(column.scale, Scale::Speed(_))),
         turning: alone.then_some([Turning::Upper, Turning::Lower][turned.rotors[0]]),
         file: name,
         format: columns.format,

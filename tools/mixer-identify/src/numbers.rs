@@ -82,7 +82,9 @@ const TORQUE_AT_LOWEST: &str =
 const LOWER_OVER_UPPER: &str =
     "thrust of the lower rotor over the upper one's at equal throttles, per torque where it is known";
 const LOWEST: &str = "thrust at the lowest throttle over the greatest";
-const GROWS: &str = "power of the throttle with which thrust grows from middle to highest throttle";
+const GROWS: &str = "power of the throttle with which thrust grows from middle to highest throttle, at one voltage";
+/// Air in which nothing else is known, kg/m3.
+const AIR: f64 = 1.2;
 
 const ONE_ROTOR: Outside = [
     "a unit is wrong, the diameter, or this is no run of ONE rotor",
@@ -115,8 +117,8 @@ pub const TABLE: [&[Number]; 4] = [&SIZES, &ROWS, &SHAPE, &VOLTAGE];
 type Outside = [&'static str; 2];
 
 #[rustfmt::skip]
-const SIZES: [Number; 8] = [
-    number("shaft power over electrical power", [0.4, 1.2], NEVER,
+const SIZES: [Number; 10] = [
+    number("shaft power over electrical power", [0.4, 1.0], NEVER,
         |run| exact(median(run.points.iter().map(|p| p.shaft_w / p.power_w))?), [
             "the torque is a force at an arm, of another arm or in another unit, the current of one rotor, or the speed that of the motor's field",
             "torque in N m (force times arm) in its column, or --unit torque=UNIT; current and speed of all rotors that turn"]),
@@ -127,15 +129,25 @@ const SIZES: [Number; 8] = [
         }, [
             "propellers of 4 to 40 inch have that: a unit is another one, or this is no run of ONE rotor",
             "the units of both: --unit thrust=UNIT, --unit torque=UNIT; where one signal drives both rotors of a pair, PRIOR"]),
-    number("torque per thrust in diameters", [0.02, 0.15], [0.02, 0.15],
+    number("fifth power of thrust over torque to the fourth, density and speed squared, T^5 / (Q^4 rho n^2),", [1.3e3, 1.7e4], NEVER,
+        |run| {
+            let rotors = [0, 1].into_iter().filter_map(|rotor| run.without_diameter(rotor));
+            exact(rotors.max_by_key(|x| (1e3 * libm::log(x / 4.7e3).abs()) as i64)?)
+        }, [
+            "thrust or torque is in another unit (twice the thrust is 32 times this, twice the torque a sixteenth), or the speed not the rotor's",
+            "the units of both: --unit thrust=UNIT, --unit torque=UNIT; speed in revolutions per minute of the rotor, not of the motor's field"]),
+    // By momentum theory. A rotor in a wake has less.
+    number("figure of merit (ideal over shaft power)", [0.48, 0.76], NEVER,
+        |run| run.single(|p, d| ideal_w(p, d) / p.shaft_w), ONE_ROTOR),
+    number("torque per thrust in diameters", [0.03, 0.1], [0.02, 0.15],
         |run| run.single(|p, d| p.torque / p.thrust / d), ONE_ROTOR),
     number("disc loading in N/m2", [15.0, 2500.0], [15.0, 2500.0],
         |run| run.single(|p, d| p.thrust / (0.25 * PI * d * d)), ONE_ROTOR),
-    // By momentum theory, in air of 1.2 kg/m3. A pair by the power of one rotor has 1.1.
-    number("ideal power over electrical power", [0.08, 0.95], [0.08, 0.95],
-        |run| run.single(|p, d| libm::pow(p.thrust, 1.5) / (0.6 * PI * d * d).sqrt() / p.power_w), ONE_ROTOR),
+    // A pair by the power of one rotor has 1.1.
+    number("ideal power over electrical power", [0.15, 0.8], [0.08, 0.95],
+        |run| run.single(|p, d| ideal_w(p, d) / p.power_w), ONE_ROTOR),
     number("thrust over density, speed squared and diameter to the fourth", [0.02, 0.3], NEVER,
-        |run| run.single(|p, d| p.thrust / (1.2 * libm::pow(p.rpm / 60.0 * d * d, 2.0))), [
+        |run| run.single(|p, d| p.thrust / (AIR * libm::pow(p.rpm[0] / 60.0 * d * d, 2.0))), [
             "the diameter is not the propeller's (its radius, another unit), or the speed not the rotor's",
             "--diameter METRE from tip to tip; speed in revolutions per minute of the rotor, not of the motor's field"]),
     number(LOWER_OVER_UPPER, [0.45, f64::INFINITY], NEVER,
@@ -160,13 +172,12 @@ const ROWS: [Number; 2] = [
 
 #[rustfmt::skip]
 const SHAPE: [Number; 6] = [
-    number(GROWS, [1.2, 2.2], NEVER,
-        |run| run.growth([0.5, 1.0], 0.0), [
-            "the throttle is a thrust that something linearised before the controller (MOT_THST_EXPO, THR_MDL_FAC)",
-            "the outputs that the speed controllers got as throttles, or that correction switched off"]),
-    number(GROWS, GROWTH, NEVER,
-        |run| run.growth([0.5, 1.0], 0.0), [
-            "the throttle is of another range of pulses, or linearised; an offset of the load cell would bend the lower end alone",
+    number(GROWS, [GROWTH[0], f64::INFINITY], NEVER, |run| run.growth(), [
+            "something linearised the throttle before the controller (MOT_THST_EXPO, THR_MDL_FAC; it is about 1 then), or the supply \
+             reached its limit, which a column of the voltage shows",
+            "the outputs that the speed controllers got as throttles, or that correction switched off; the voltage of each row"]),
+    number(GROWS, [f64::NEG_INFINITY, GROWTH[1]], NEVER, |run| run.growth(), [
+            "the throttle is of another range of pulses",
             "the pulses that were sent, with --pwm-range LOW,HIGH of throttle 0 and 1, or shares of that range"]),
     number(TORQUE_AT_LOWEST, [f64::NEG_INFINITY, 0.03], NEVER,
         |run| {
@@ -179,10 +190,12 @@ const SHAPE: [Number; 6] = [
         |run| run.lowest(), [
             "rotors may stand still there, or the load cells read something at rest",
             "without the rows below IDLE, where both turn; else set the load cells to zero at rest"]),
-    number("power of the throttle with which thrust grows from lowest to highest throttle", [1.45, 2.15], NEVER,
-        |run| run.lowest().and_then(|_| run.growth([0.0, 1.0], TYPICAL_EXPONENT)), [
-            "the load cells read something at rest; or the throttle is of another range of pulses",
-            ZERO[1]]),
+    number("thrust over the speeds squared at the lowest throttle over that at the highest", [0.5, 1.3], NEVER,
+        |run| {
+            let at = |p: &Point| p.thrust / p.rpm.iter().map(|n| n * n).sum::<f64>();
+            let [(_, low), (_, high)] = [run.equal.first()?, run.equal.last()?];
+            exact(at(low) / at(high)).filter(|_| run.lowest().is_some())
+        }, ZERO),
 ];
 
 #[rustfmt::skip]
@@ -326,21 +339,30 @@ impl<'a> Run<'a> {
         shares.max_by(|[a, e], [b, f]| (a / e).total_cmp(&(b / f)))
     }
 
-    /// The power of the throttle with which thrust grows between the equal throttles next to these shares of their range,
-    /// brought to one voltage by this exponent.
-    fn growth(&self, shares: [f64; 2], exponent: f64) -> Option<[f64; 2]> {
+    /// The power of the throttle with which thrust, brought to one voltage, grows between the equal throttles next to
+    /// the middle and the end of their range. A throttle that is a speed has no pulses and nothing to linearise.
+    fn growth(&self) -> Option<[f64; 2]> {
         let (low, high) = (self.equal.first()?.0, self.equal.last()?.0);
-        let distance = |share: f64| move |(t, _): &&(f64, &Point)| (t - low - share * (high - low)).abs();
-        let near = |share: f64| {
-            let near = distance(share);
-            self.equal.iter().min_by(|a, b| near(a).total_cmp(&near(b)))
+        let distance = |(t, _): &&(f64, &Point)| (t - 0.5 * (low + high)).abs();
+        let middle = self.equal.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
+        let [(from, a), (to, b)] = [middle?, self.equal.last()?];
+        let sag = Some(a.voltage / b.voltage).filter(|sag| sag.is_finite()).unwrap_or(1.0);
+        let thrust = libm::pow(sag, TYPICAL_EXPONENT) * b.thrust / a.thrust;
+        let growth = libm::log(thrust) / libm::log(to / from);
+        exact(growth).filter(|_| *to > 1.2 * from && !self.bench.holds_speed)
+    }
+
+    /// T^5 / (Q^4 rho n^2) of a rotor at its greatest thrust.
+    fn without_diameter(&self, rotor: usize) -> Option<f64> {
+        let own = |p: &Point| match self.pair() {
+            None => [p.thrust, p.torque],
+            Some(_) => [p.cells[rotor].abs(), p.cells[2 + rotor]],
         };
-        let [(from, a), (to, b)] = [near(shares[0])?, near(shares[1])?];
-        let sag = Some(a.voltage / b.voltage)
-            .filter(|sag| sag.is_finite())
-            .unwrap_or(1.0);
-        let thrust = libm::pow(sag, exponent) * b.thrust / a.thrust;
-        exact(libm::log(thrust) / libm::log(to / from)).filter(|_| *to > 1.2 * from)
+        let most = self.points.iter().max_by(|a, b| own(a)[0].total_cmp(&own(b)[0]))?;
+        let ([f, q], n) = (own(most), most.rpm[rotor] / 60.0);
+        let air = self.bench.air.as_ref().map_or(AIR, |air| air.density_kg_m3);
+        let value = libm::pow(f, 5.0) / (libm::pow(q, 4.0) * air * n * n);
+        Some(value).filter(|x| x.is_finite() && *x > 0.0)
     }
 
     /// The lowest equal throttle that gives thrust.
@@ -353,12 +375,17 @@ impl<'a> Run<'a> {
     /// The share of the greatest thrust at the lowest equal throttles of a map over the whole range.
     fn lowest(&self) -> Option<[f64; 2]> {
         let [(low, at), (high, _)] = [self.pair()?.equal.first()?, self.equal.last()?];
-        exact(at.thrust / self.most(|p| p.thrust)).filter(|_| *low <= 0.15 && *high >= 0.5)
+        exact(at.thrust / self.most(|p| p.thrust)).filter(|_| *low < 0.151 && *high > 0.499)
     }
 }
 
 fn exact(value: f64) -> Option<[f64; 2]> {
     Some([value, 0.0])
+}
+
+/// The power that a disc needs for the thrust, W.
+fn ideal_w(p: &Point, diameter_m: f64) -> f64 {
+    libm::pow(p.thrust, 1.5) / (0.5 * AIR * PI * diameter_m * diameter_m).sqrt()
 }
 
 fn cube(x: f64) -> f64 {

@@ -21,11 +21,12 @@ pub(crate) fn greatest(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |most, x| most.max(x.abs()))
 }
 
-/// The mean of the finite ones; NaN where there are none.
+/// The mean of the finite ones, of equal ones that itself in every digit; NaN where there are none.
 pub(crate) fn mean_of_finite(values: impl IntoIterator<Item = f64>) -> f64 {
-    let finite = values.into_iter().filter(|x| x.is_finite());
-    let (sum, count) = finite.fold((0.0, 0.0), |(sum, count), x| (sum + x, count + 1.0));
-    sum / count
+    let mut finite = values.into_iter().filter(|x| x.is_finite());
+    let Some(first) = finite.next() else { return f64::NAN };
+    let (sum, count) = finite.fold((0.0, 1.0), |(sum, count), x| (sum + (x - first), count + 1.0));
+    first + sum / count
 }
 
 /// Root of the mean square.

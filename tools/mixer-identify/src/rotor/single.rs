@@ -146,7 +146,7 @@ impl Single {
 
     /// The throttle at which the run ends, 1 where that is next to it.
     pub(crate) fn end(&self) -> f64 {
-        match self.measured[1] < FULL {
+        match self.measured[1] < FULL - SAME {
             true => (1e4 * self.measured[1] + 1e-6).floor() / 1e4,
             false => 1.0,
         }
@@ -167,7 +167,7 @@ fn enough(file: &str, points: &[Point], [_, highest]: [f64; 2]) -> Result<(), Re
     let count = distinct(points);
     let reason = match count < FEWEST {
         true => format!("{count} distinct throttles, at least {FEWEST} are needed"),
-        false if highest < REACHES => {
+        false if highest < REACHES - SAME => {
             format!("the run stops at a throttle of {highest:.2}, below {REACHES}")
         }
         false => return Ok(()),
