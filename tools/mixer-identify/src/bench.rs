@@ -212,13 +212,15 @@ struct Turned {
 
 impl Turned {
     /// By the throttles; one signal becomes the throttle of both.
-    fn of(samples: &mut [Sample], columns: &Columns, how: &Preparation) -> Turned {
+    fn of(samples: &mut [Sample], currents: [f64; 2], columns: &Columns, how: &Preparation) -> Turned {
         let one_throttle = columns[Quantity::Throttle].rotors[1].is_none();
-        let one_signal = one_throttle && (how.is_correction || of_both(columns, samples));
-        if one_signal {
-            samples.iter_mut().for_each(|s| s.throttle[1] = s.throttle[0]);
+        let moves = moving(samples, currents).or(how.is_correction.then_some([true; 2]));
+        if let Some(moves) = moves.filter(|_| one_throttle) {
+            let of = |s: &mut Sample| s.throttle = moves.map(|moves| if moves { s.throttle[0] } else { 0.0 });
+            samples.iter_mut().for_each(of);
         }
-        let two_throttles = one_signal || !one_throttle;
+        let one_signal = one_throttle && moves == Some([true; 2]);
+        let two_throttles = moves.is_some() || !one_throttle;
         let [upper, lower] = [0, 1].map(|rotor| samples.iter().any(|s| s.throttle[rotor] > STOP_THROTTLE));
         let (kind, rotors): (BenchKind, &[usize]) = match (two_throttles, upper, lower) {
             (true, true, true) => (BenchKind::Pair, &[0, 1]),
@@ -236,7 +238,10 @@ impl Turned {
     /// What the user should know of it.
     fn note(&self, columns: &Columns, how: &Preparation) -> Option<String> {
         match self.kind {
-            BenchKind::SingleRotor if self.two_throttles && !how.prefers_rotor_cell => {
+            BenchKind::SingleRotor
+                if self.two_throttles
+                    && !(how.prefers_rotor_cell && columns[Quantity::Throttle].rotors[1].is_some()) =>
+            {
                 let still = if self.rotors == [0] { "lower" } else { "upper" };
                 Some(format!(
                     "the {still} rotor stands still throughout: a single rotor"
@@ -326,6 +331,7 @@ pub fn prepare(log: Log, how: &Preparation) -> Result<Bench, Refusal> {
         mut samples,
         mut refused,
         air,
+        currents,
         mut notes,
         idle_options,
     } = log;
@@ -337,7 +343,7 @@ pub fn prepare(log: Log, how: &Preparation) -> Result<Bench, Refusal> {
         None => by_columns(&name, &air)?,
         given => given.clone(),
     };
-    let turned = Turned::of(&mut samples, &columns, how);
+    let turned = Turned::of(&mut samples, currents, &columns, how);
     notes.extend(turned.note(&columns, how));
     let tare = tare::examine(&mut samples, |s| turned.is_rest(s), how.tare);
     let rests = samples
@@ -348,8 +354,13 @@ pub fn prepare(log: Log, how: &Preparation) -> Result<Bench, Refusal> {
     let before = samples.len();
     samples.retain(|s| !turned.is_start_or_stop(s));
     let start_stop_rows = before - samples.len();
-    for &rotor in turned.rotors {
-        supplied(&name, rotor, &mut samples, &mut refused, &mut notes);
+    for rotor in [0, 1] {
+        let turns = turned.rotors.contains(&rotor);
+        supplied(&name, rotor, turns, &mut samples, &mut refused, &mut notes)?;
+    }
+    let may_lack_torque = how.is_correction || turned.one_signal;
+    if turned.kind == BenchKind::SingleRotor || may_lack_torque {
+        notes.extend(tare::constant_torque(&mut samples, turned.rotors));
     }
     let (streaming, mut settling_rows) = (plateau::is_streaming(&samples), 0);
     if streaming {
@@ -357,6 +368,7 @@ pub fn prepare(log: Log, how: &Preparation) -> Result<Bench, Refusal> {
     } else {
         notes.extend(counted_once(&name, &mut samples));
     }
+    notes.extend(without_load_cell(&name, streaming, &mut samples));
     if samples.len() > MOST_POINTS {
         return Err(Refusal::of(
             name,
@@ -364,7 +376,6 @@ pub fn prepare(log: Log, how: &Preparation) -> Result<Bench, Refusal> {
             "the mean of what was recorded at each command",
         ));
     }
-    let may_lack_torque = how.is_correction || turned.one_signal;
     let mut record_drifts = false;
     let (signs, sums) = match turned.kind {
         BenchKind::Pair => {
@@ -478,15 +489,39 @@ fn by_columns(name: &str, rows: &[[f64; 3]]) -> Result<Option<BenchAir>, Refusal
     }
 }
 
-/// Whether both rotors were measured: thrust or torque of each, or their currents.
-fn of_both(columns: &Columns, samples: &[Sample]) -> bool {
-    let measured = |x: f64| x.is_finite() && x != 0.0;
-    let each = |s: &Sample| {
-        [s.thrust, s.torque]
-            .iter()
-            .any(|of| of.rotors.iter().all(|x| measured(*x)))
+/// Change of a rotor's current, torque or thrust over the other's, below which it stands still: a rotor at rest draws what its
+/// controller needs, and has a drag in the other's wake; the lower one of a pair that turns has half or more.
+const STILL: f64 = 0.25;
+
+/// Which rotors move, by the first of these quantities that each rotor has; nothing where none tells.
+fn moving(samples: &[Sample], currents: [f64; 2]) -> Option<[bool; 2]> {
+    let change = |of: fn(&Sample) -> [f64; 2]| {
+        [0, 1].map(|rotor| {
+            let [low, high] = extent(samples.iter().map(|s| of(s)[rotor]).filter(|x| x.is_finite()));
+            high - low
+        })
     };
-    columns[Quantity::Current].rotors.iter().all(Option::is_some) || samples.iter().any(each)
+    let changes = [currents, change(|s| s.torque.rotors), change(|s| s.thrust.rotors)];
+    let known = |[a, b]: &[f64; 2]| *a >= 0.0 && *b >= 0.0 && a + b > 0.0;
+    let changes = changes.into_iter().find(known)?;
+    Some(changes.map(|own| own > STILL * changes[0].max(changes[1])))
+}
+
+/// Passes over rows, or stops of a streaming log, in which no load cell has a value: loggers are faster than load cells.
+fn without_load_cell(name: &str, streaming: bool, samples: &mut Vec<Sample>) -> Option<String> {
+    let has = |s: &Sample| {
+        let cells = [s.thrust, s.torque].into_iter();
+        let mut cells = cells.flat_map(|of| of.rotors.into_iter().chain([of.whole]));
+        cells.any(f64::is_finite)
+    };
+    let (all, first) = (samples.len(), samples.iter().find(|s| !has(s))?.line);
+    if samples.iter().any(has) {
+        samples.retain(has);
+    }
+    let (what, passed) = (["rows", "stops"][usize::from(streaming)], all - samples.len());
+    (passed > 0).then(|| {
+        format!("{name}:{first}: {passed} of {all} {what} are passed over: no load cell has a value in them")
+    })
 }
 
 /// Whether throttles are of one signal for both rotors; that of either supply may move them a little.
@@ -591,37 +626,44 @@ fn supply(turning: &[usize], volts: [f64; 2]) -> [f64; 2] {
     [mean, if above.is_finite() { above } else { 0.0 }]
 }
 
-/// Refuses rows whose voltage cannot have driven the rotor. Where all are 0 none was recorded.
+/// Refuses rows whose voltage cannot have driven the rotor. A column below any supply is of a meter that was not plugged in.
 fn supplied(
     name: &str,
     rotor: usize,
+    turns: bool,
     samples: &mut Vec<Sample>,
     refused: &mut Vec<RefusedRow>,
     notes: &mut Vec<String>,
-) {
+) -> Result<(), Refusal> {
     let Some(median) = median(samples.iter().map(|s| s.voltage[rotor])) else {
-        return;
+        return Ok(());
     };
-    if median <= 0.0 {
+    let [least, most] = quantity::VOLTAGE.range;
+    if median < least {
         notes.push(format!(
             "the voltage is {median} V in most rows: taken as not measured"
         ));
         for sample in samples {
             (sample.voltage[rotor], sample.power_w) = (f64::NAN, f64::NAN);
         }
-        return;
+    } else if let (Err(told), true) = (quantity::VOLTAGE.check(median), median > most) {
+        let role = ["voltage", "lower_voltage"][rotor];
+        let needed = format!("volts in the column, or --unit {role}=mV");
+        return Err(Refusal::of(name, format!("the voltage: {told}"), needed));
+    } else if turns {
+        samples.retain(|s| {
+            let off = s.voltage[rotor] <= OFF * median;
+            if off {
+                let reason = format!(
+                    "the voltage is {} V, in the middle of the rows {median} V",
+                    s.voltage[rotor]
+                );
+                refused.push(RefusedRow::new(name, s.line, Fault::new("voltage off", reason)));
+            }
+            !off
+        });
     }
-    samples.retain(|s| {
-        let off = s.voltage[rotor] <= OFF * median;
-        if off {
-            let reason = format!(
-                "the voltage is {} V, in the middle of the rows {median} V",
-                s.voltage[rotor]
-            );
-            refused.push(RefusedRow::new(name, s.line, Fault::new("voltage off", reason)));
-        }
-        !off
-    });
+    Ok(())
 }
 
 /// A grid whose one rotor repeats its commands and the other does not: its record may have drifted,

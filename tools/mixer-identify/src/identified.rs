@@ -11,7 +11,7 @@ use crate::fit::pair::{self, Pair};
 use crate::fit::power::{self, Power};
 use crate::fit::voltage::{self, Exponent, PLAUSIBLE, Voltage};
 use crate::fit::wishes::FitOptions;
-use crate::numbers;
+use crate::numbers::{self, Anomaly};
 use crate::refusal::Refusal;
 use crate::rotor::Turning;
 use crate::rotor::alone;
@@ -99,10 +99,8 @@ pub fn with_runs(
         .iter_mut()
         .chain(runs.iter_mut().flatten())
         .for_each(|b| air.bring(b));
-    let anomalies: Result<Vec<_>, Refusal> = benches
-        .iter()
-        .map(|bench| numbers::anomalies(bench, None))
-        .collect();
+    let all = benches.iter().chain(runs.iter().flatten());
+    let anomalies: Result<Vec<_>, Refusal> = all.map(|bench| numbers::anomalies(bench, None)).collect();
     let anomalies = anomalies?.concat();
     let balanced: Vec<Bench> = benches.iter().map(balanced).collect();
     let voltage = measured_exponents(&balanced).filter(|_| !wishes.closed_loop);
@@ -125,6 +123,7 @@ pub fn with_runs(
         Some(of_runs?)
     } else {
         only_single(&benches, voltage.as_ref())?;
+        warnings.extend(anomalies.iter().map(Anomaly::sentence));
         no_runs(&runs)?;
         None
     };

@@ -77,6 +77,17 @@ pub struct Columns {
     pub sides_named: bool,
     /// Whether the user says it, of both rotors.
     pub sides_by_hand: bool,
+    /// Columns that are one if they agree in every row.
+    pub twins: Vec<Twin>,
+}
+
+/// Two columns of one quantity in two units, of which the first is read.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Twin {
+    /// Both.
+    pub columns: [Column; 2],
+    /// What is said where they do not agree, and what mends it.
+    pub lack: (String, String),
 }
 
 impl Index<Quantity> for Columns {
@@ -223,13 +234,19 @@ impl Columns {
         columns.sides_named |= by_hand.columns.iter().any(says_side) || by_hand.swap;
         columns.by_speed(&names, by_hand);
         columns.require(by_hand, &mut lacks);
-        if lacks.is_empty() {
-            return Ok(columns);
+        match lacks.is_empty() {
+            true => Ok(columns),
+            false => Err(Columns::refusal(place, &headers, lacks)),
         }
+    }
+
+    /// The refusal of a header at `place` that lacks this.
+    pub(crate) fn refusal(place: &str, headers: &[impl AsRef<str>], lacks: Vec<Lack>) -> Refusal {
         let (what, mut mends): (Vec<String>, Vec<String>) = lacks.into_iter().unzip();
         mends.dedup();
+        let headers: Vec<&str> = headers.iter().map(AsRef::as_ref).collect();
         let reason = format!("{}; the columns are {}", what.join("; "), headers.join(", "));
-        Err(Refusal::of(place, reason, mends.join("; ")))
+        Refusal::of(place, reason, mends.join("; "))
     }
 
     /// Speeds that stand for throttles.
@@ -266,10 +283,6 @@ impl Columns {
         }
         if !self[Quantity::Thrust].any() {
             lacks.push(("no thrust column".to_owned(), named("thrust", "HEADER")));
-        }
-        // Of a pair it is asked for later, where nothing else is missing.
-        if !self[Quantity::Torque].any() && !lacks.is_empty() {
-            lacks.push(("no torque column".to_owned(), named("torque", "HEADER")));
         }
     }
 
@@ -330,14 +343,16 @@ impl Columns {
             let slot = self.slot(quantity, side);
             if let Some(first) = slot {
                 // Two columns for one role: guessing would be silent. Detail of the first two.
+                let (same, second) = (first.clone(), scaled(index, heading, name, quantity, role, by_hand));
                 let (first, raw) = (&first.name, &name.raw);
                 let both = format!("both look like the {role}");
                 if !aside && !lacks.iter().any(|(what, _)| what.ends_with(&both)) {
                     // Of names that say no side the one that is told of may be either rotor's.
                     let mend = match (quantity, name.side(&prefixes)) {
-                        (Throttle, None) => {
-                            ["upper", "lower"].map(|role| named(role, "HEADER")).join(" and ")
-                        }
+                        (Throttle, None) => format!(
+                            "{} of one rotor; of two --column upper=HEADER and --column lower=HEADER",
+                            named("throttle", &format!("{raw:?}"))
+                        ),
                         _ if first == raw => {
                             let same = headings.iter().map(|heading| &heading.name).enumerate();
                             let same: Vec<usize> =
@@ -346,7 +361,16 @@ impl Columns {
                         }
                         _ => named(role, &format!("{raw:?}")),
                     };
-                    lacks.push((format!("the columns {first:?} and {raw:?} {both}"), mend));
+                    let lack = (format!("the columns {first:?} and {raw:?} {both}"), mend);
+                    let (second, unknown) = second;
+                    let scales = [&same, &second].map(|column| column.unit.is_some().then_some(column.scale));
+                    match unknown.is_none() && scales[0] != scales[1] && !scales.contains(&None) {
+                        true => self.twins.push(Twin {
+                            columns: [same, second],
+                            lack,
+                        }),
+                        false => lacks.push(lack),
+                    }
                 }
                 continue;
             }

@@ -13,6 +13,7 @@ use crate::bench::number::{Cell, is_blank, is_missing};
 use crate::bench::sheet::{Sheet, names};
 use crate::bench::units::{Quantity, Scale};
 use crate::refusal::{Refusal, cut, cut_cell};
+use crate::statistics::{extent, greatest};
 
 /// A row that was left out, and why.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
@@ -130,6 +131,8 @@ pub struct Log {
     pub refused: Vec<RefusedRow>,
     /// Temperature, K, pressure, Pa, and density of the air, kg/m3, of the rows in which columns tell the last.
     pub air: Vec<[f64; 3]>,
+    /// By how much the currents of the upper and of the lower rotor change, A; negative where they have none.
+    pub currents: [f64; 2],
     /// What was passed over or taken for something else.
     pub notes: Vec<String>,
     /// Options that had nothing to work on here.
@@ -174,13 +177,13 @@ pub fn read(name: &str, bytes: &[u8], reading: &Reading) -> Result<Log, Refusal>
     let columns = Columns::find(&place, &sheet.headings, by_hand).map_err(|refusal| match sheet.without_names {
         false => refusal,
         true => Refusal::of(
-            place,
+            &place,
             format!("numbers where the names of the columns stand: {}", header.join(", ")),
             "a first line with names and units, as upper,lower,thrust_n,torque_nm or throttle,thrust_n,torque_nm",
         ),
     })?;
     let mut decimals = vec!['.'; header.len()];
-    for column in columns.all() {
+    for column in columns.all().chain(columns.twins.iter().flat_map(|twin| &twin.columns)) {
         decimals[column.index] = sheet.decimal(column.index).map_err(|(line, number)| {
             Refusal::of(
                 format!("{name}:{line}"),
@@ -203,6 +206,9 @@ pub fn read(name: &str, bytes: &[u8], reading: &Reading) -> Result<Log, Refusal>
             .map_or(0, |last| last + 1),
         least: if sheet.by_blanks { header.len() } else { 0 },
     };
+    if let Some(twin) = columns.twins.iter().find(|twin| cells.differ(&twin.columns, &sheet)) {
+        return Err(Columns::refusal(&place, &header, vec![twin.lack.clone()]));
+    }
     let (mut samples, mut refused, mut asides, mut air) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     for (line, record) in &sheet.rows {
         if let Some(what) = aside(record) {
@@ -238,6 +244,12 @@ pub fn read(name: &str, bytes: &[u8], reading: &Reading) -> Result<Log, Refusal>
         };
         notes.push(format!("{name}:{line} is passed over: {what}{more}"));
     }
+    let currents = columns[Quantity::Current].rotors.each_ref().map(|column| {
+        let all = sheet.rows.iter().filter(|(_, record)| aside(record).is_none());
+        let all = all.filter_map(|(_, record)| cells.value(column, record).ok());
+        let [low, high] = extent(all.filter(|x| x.is_finite()));
+        high - low
+    });
     air.retain(|[_, _, density]| density.is_finite());
     let pulses = (cells.pwm_given && !cells.has_pulses.get()).then(|| "--pwm-range".to_owned());
     let units = by_hand
@@ -252,6 +264,7 @@ pub fn read(name: &str, bytes: &[u8], reading: &Reading) -> Result<Log, Refusal>
         samples,
         refused,
         air,
+        currents,
         notes,
     })
 }
@@ -298,9 +311,16 @@ fn aside(record: &csv::StringRecord) -> Option<&'static str> {
         .any(|summary| summary.eq_ignore_ascii_case(first))
     {
         true => Some("a summary of other rows"),
-        false => (!record.iter().any(|cell| Cell::of(cell).is_some())).then_some("there is no number in it"),
+        false => match record.iter().filter_map(Cell::of).filter(Cell::is_number).count() {
+            0 => Some("there is no number in it"),
+            1 => Some("there is one number in it"),
+            _ => None,
+        },
     }
 }
+
+/// Difference of two columns of one quantity in two units, in shares of its greatest value, that their rounding explains.
+const ROUNDED: f64 = 0.02;
 
 struct Cells {
     pwm_range: [f64; 2],
@@ -359,6 +379,24 @@ impl Cells {
                 .unwrap_or(f64::NAN),
             speed,
         })
+    }
+
+    /// Whether two columns of one quantity differ in a row by more than the rounding of a table.
+    fn differ(&self, columns: &[Column; 2], sheet: &Sheet) -> bool {
+        let rows = sheet.rows.iter().filter(|(_, record)| aside(record).is_none());
+        let value = |column: &Column, record| match column.quantity {
+            Quantity::Throttle => self.throttle(&Some(column.clone()), record),
+            _ => self.value(&Some(column.clone()), record),
+        };
+        let both = rows.map(|(_, record)| {
+            columns
+                .each_ref()
+                .map(|column| value(column, record).unwrap_or(f64::INFINITY))
+        });
+        let both: Vec<[f64; 2]> = both.filter(|[a, b]| !a.is_nan() && !b.is_nan()).collect();
+        let most = greatest(&both.iter().map(|both| both[0]).collect::<Vec<_>>());
+        // Of infinite ones the difference is no number.
+        !both.iter().all(|[a, b]| (a - b).abs() <= ROUNDED * most)
     }
 
     /// Refuses a row whose cells cannot stand in the columns of the header.

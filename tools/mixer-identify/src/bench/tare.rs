@@ -107,6 +107,21 @@ pub(super) fn examine(
     tare
 }
 
+/// Takes a torque that is the same in every row for one that was not measured.
+pub(super) fn constant_torque(samples: &mut [Sample], turning: &[usize]) -> Option<String> {
+    let own = CELLS[3..].iter().enumerate();
+    let own = own.filter(|(k, _)| *k == 0 || turning.contains(&(k - 1)));
+    let told = own.filter_map(|(_, (name, unit, _, cell))| {
+        let [low, high] = extent(samples.iter_mut().map(|s| *cell(s)).filter(|q| q.is_finite()));
+        let is_constant = low == high && samples.len() > 1;
+        is_constant.then(|| {
+            samples.iter_mut().for_each(|s| *cell(s) = f64::NAN);
+            format!("the {name} is {low} {unit} in every row: taken as not measured")
+        })
+    });
+    told.last()
+}
+
 /// The rows of each stop in which every speed is 0 or, without speeds, which are several; of a streaming
 /// log without those that settle.
 fn at_rest(samples: &[Sample], commanded_off: impl Fn(&Sample) -> bool) -> Vec<Vec<usize>> {

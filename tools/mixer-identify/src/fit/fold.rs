@@ -68,6 +68,28 @@ pub fn round_idle(map: &EnclosedPairMap, least: f64, max: f64) -> Option<f64> {
     idles.take_while(|min| *min < max).find(is_proven)
 }
 
+/// Greatest throttles below that of a box, in steps of 0.05, that leave a range to fly with.
+pub(crate) fn lower_ends(ThrottleBox { min, max }: ThrottleBox) -> impl Iterator<Item = f64> {
+    let ends = (1..).map(move |k| (1e4 * (max - 0.05 * f64::from(k))).round() / 1e4);
+    ends.take_while(move |end| *end > min + FLOWN)
+}
+
+/// Least range of throttle to fly with.
+const FLOWN: f64 = 0.3;
+
+/// The largest such range, cut off above, over which the map is proven injective from an idle on.
+pub(crate) fn within(map: &EnclosedPairMap, throttle_box: ThrottleBox) -> Option<ThrottleBox> {
+    lower_ends(throttle_box).find_map(|max| {
+        let least = (CLEAR * map.least_idle(max)?).max(throttle_box.min);
+        let min = round_idle(map, least, max)?;
+        (min + FLOWN < max).then_some(ThrottleBox { min, max })
+    })
+}
+
+/// The idle over the least one at which the map can be inverted. Right at that the inverse bends
+/// without bound, and no tolerance is met.
+pub(crate) const CLEAR: f64 = 1.03;
+
 /// Steps of the grid on which regions are sought.
 const STEPS: usize = 200;
 

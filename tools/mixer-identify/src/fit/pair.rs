@@ -10,7 +10,7 @@ use crate::bench::sign::AUTO;
 use crate::bench::{Bench, BenchKind, mean_voltage};
 use crate::fit::basis::ThrottleBox;
 use crate::fit::cross::{self, Candidate};
-use crate::fit::fold::{self, Fold};
+use crate::fit::fold::{self, CLEAR, Fold};
 use crate::fit::robust::{self, Outlier};
 use crate::fit::uncertainty::{Uncertainty, by_voltage};
 use crate::fit::voltage::Voltage;
@@ -296,10 +296,6 @@ fn one_pair(
     Ok(())
 }
 
-/// The idle over the least one at which the map can be inverted. Right at that the inverse bends
-/// without bound, and no tolerance is met.
-const CLEAR: f64 = 1.03;
-
 /// The idle of the identified map: the box's, or where the map folds in it or next to it a little
 /// over the least one without a fold, rounded up to 0.005.
 fn idle(
@@ -332,7 +328,10 @@ fn idle(
                 }
                 false => "the map could not be proven injective, whatever the idle".into(),
             },
-            "another basis, or data without outliers (--robust)",
+            match fold::within(&map, fold.commanded) {
+                Some(ThrottleBox { min, max }) => format!("--throttle {min},{max}, over which it can be inverted"),
+                None => "rows that are sound: --robust leaves out those that stand out; else the map measured again".to_owned(),
+            },
         ));
     };
     let (why, without) = match fold.folds {

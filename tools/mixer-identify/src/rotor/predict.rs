@@ -15,6 +15,7 @@ use crate::air::Air;
 use crate::bench::{Bench, BenchKind, is_one_signal, mean_voltage};
 use crate::fit::balance::throttles;
 use crate::fit::basis::ThrottleBox;
+use crate::fit::fold::{CLEAR, lower_ends};
 use crate::fit::uncertainty::{EXPONENT_DEVIATION, Uncertainty, by_voltage};
 use crate::fit::{Design, ten_digits};
 use crate::identified::{bench_range, in_pack};
@@ -35,17 +36,15 @@ const KNOWN_SPACINGS: [f64; 2] = [0.1, 1.0];
 pub const LEAST_IDLE: f64 = 0.20;
 /// Greatest idle that is tried.
 const MOST_IDLE: f64 = 0.45;
-/// Over the least idle without a fold, as `identify` keeps it.
-const CLEAR: f64 = 1.03;
 /// Thrust of the two rotors alone at full throttle, as a ratio less 1, above which they are not of
 /// one kind.
 const UNEQUAL: f64 = 0.1;
 /// What rotors add that are not alike, % of full scale for each e-fold of their thrusts. An assumption: no pair of unequal
 /// rotors was measured.
 const UNEQUAL_PERCENT: f64 = 10.0;
-/// What throttles beyond the end of a run add, % of full scale: 123 pairs of public runs (StrawsonDesign), whole and cut at
-/// 0.71, 0.80 and 0.90, differ over the box by 3.2 % in two thirds and by 6 % in 95 %.
-const BEYOND: [f64; 2] = [3.0, 3.0];
+/// What throttles beyond the end of a run add, % of full scale for the root of how far they go: of 208 public runs of one rotor
+/// (StrawsonDesign), cut at 0.71 to 0.90 and extrapolated to their ends, 0.95 to 1, no thrust is off by more than two of it.
+const BEYOND: f64 = 25.0;
 /// Rows of a pair from which on they describe it better by themselves.
 pub const ENOUGH_ROWS: usize = 16;
 
@@ -369,7 +368,7 @@ fn uncertainty(
         brought.map_or(0.0, |(from, to)| by_voltage(EXPONENT_DEVIATION, from, to))
     });
     let of_voltage = of_voltage.fold(0.0, f64::max);
-    let beyond = runs.iter().any(|run| run.end() < throttle.max);
+    let beyond = runs.iter().map(|run| throttle.max - run.end()).fold(0.0, f64::max);
     let unequal =
         UNEQUAL_PERCENT * libm::log(full_thrusts(runs).map_or(1.0, |[upper, lower]| lower / upper)).abs();
     let adding = [
@@ -378,7 +377,7 @@ fn uncertainty(
         (no_torque, WITHOUT_TORQUE),
         (true, [of_voltage; 2]),
         (true, [unequal; 2]),
-        (beyond, BEYOND),
+        (true, [BEYOND * beyond.sqrt(); 2]),
     ];
     let without = Case {
         rows: Vec::new(),
@@ -398,39 +397,47 @@ fn uncertainty(
     }
 }
 
-/// The cubic of the map over the box whose idle the compiler takes: the least from the wished one
-/// on, in steps of a hundredth.
+/// The cubic of the map over the box, or the refusal with the box in which there is one.
 fn compiled(
     map: &dyn Fn([f64; 2]) -> [f64; 2],
-    [upper, lower]: [Rotor; 2],
+    rotors: [Rotor; 2],
     uncertainty: Uncertainty,
     wished: ThrottleBox,
     file: &str,
 ) -> Result<PredictedPair, Refusal> {
-    let basis = Basis::Cubic;
-    let (from, needed) = (
-        wished.min,
-        "--throttle MIN,MAX within what the run has; else a run of a rotor whose thrust and torque grow over the whole throttle, or a \
-         bench for the pair",
-    );
-    let fault = || {
-        let reason = format!("the predicted map cannot be inverted at any idle from {from} to {MOST_IDLE}");
+    let within = |throttle| at_an_idle(map, rotors, uncertainty, throttle);
+    let narrower = || lower_ends(wished).find_map(|max| within(ThrottleBox { max, ..wished }));
+    within(wished).ok_or_else(|| {
+        let (from, to) = (wished.min, MOST_IDLE.max(wished.min));
+        let reason = format!("the predicted map cannot be inverted at any idle from {from} to {to}");
+        let needed = match narrower() {
+            Some(PredictedPair { throttle, .. }) => {
+                format!("--throttle {},{}, over which it can be", throttle.min, throttle.max)
+            }
+            None => "a run of a rotor whose thrust and torque grow over the whole throttle, or a bench for the pair".to_owned(),
+        };
         Refusal::of(file, reason, needed)
-    };
+    })
+}
+
+/// The cubic of the map over the box whose idle the compiler takes: the least from the wished one
+/// on, in steps of a hundredth.
+fn at_an_idle(
+    map: &dyn Fn([f64; 2]) -> [f64; 2],
+    [upper, lower]: [Rotor; 2],
+    uncertainty: Uncertainty,
+    wished: ThrottleBox,
+) -> Option<PredictedPair> {
+    let basis = Basis::Cubic;
     let out = |rotor: Rotor, sign: f64| Out {
         thrust_n: rotor.thrust.0.map(ten_digits),
         torque_nm: rotor.torque.0.map(|c| ten_digits(sign * c)),
     };
-    for step in 0.. {
-        let throttle = ThrottleBox {
-            min: (1e4 * (wished.min + 0.01 * f64::from(step))).round() / 1e4,
-            ..wished
-        };
-        if throttle.min > MOST_IDLE.max(wished.min) {
-            break;
-        }
+    let idles = (0..).map(|step| (1e4 * (wished.min + 0.01 * f64::from(step))).round() / 1e4);
+    for min in idles.take_while(|min| *min <= MOST_IDLE.max(wished.min)) {
+        let throttle = ThrottleBox { min, ..wished };
         let points: Vec<[f64; 2]> = throttle.square(20).collect();
-        let design = Design::new(basis, &points, throttle).map_err(|_| fault())?;
+        let design = Design::new(basis, &points, throttle).ok()?;
         let values: Vec<[f64; 2]> = points.iter().map(|&t| map(t)).collect();
         let channel = |k: usize| {
             let y: Vec<f64> = values.iter().map(|v| v[k]).collect();
@@ -463,10 +470,10 @@ fn compiled(
             misfit_percent: [f, q].map(ten_digits),
         };
         if mixer_compiler::compile(&Source::new("predicted.toml", one_pair(&pair))).is_ok() {
-            return Ok(pair);
+            return Some(pair);
         }
     }
-    Err(fault())
+    None
 }
 
 /// An airframe of one such pair, for the compiler to judge.

@@ -15,6 +15,13 @@ pub(super) struct Name {
 /// Words that make a column something other than what its `thrust` or `torque` suggests.
 const OTHERS: &str = "efficiency|power |speed|rpm|servo|centre|center|temp|vibration|offset|std";
 
+/// Words that a force along the axis has beside it; one along another axis is no thrust.
+const BESIDE_FORCE: &str = "axial total mean measured fz z motor upper lower top bottom left right a b";
+
+fn of_any(words: &str, word: &str) -> bool {
+    words.split(' ').any(|known| known == word)
+}
+
 /// Words that tell what a column measures, the first that is there.
 const WORDS: [(Quantity, &str); 6] = [
     (Quantity::Throttle, "esc pwm throttle gas gaz acelerador"),
@@ -120,6 +127,14 @@ impl Name {
             .any(|words| side_of(words, &self.text).is_some())
         {
             return Some(Quantity::Throttle);
+        }
+        let mut words = self
+            .words()
+            .filter(|word| !word.starts_with(|c: char| c.is_ascii_digit()) && !of_any(BESIDE_FORCE, word));
+        let is_force = matches!((words.next(), words.next()), (Some("force" | "load"), None));
+        let in_newtons = |unit: &String| units::scale(Quantity::Thrust, unit).is_some();
+        if is_force && self.unit.as_ref().is_none_or(in_newtons) {
+            return Some(Quantity::Thrust);
         }
         let is_of = |words: &str| self.words().any(|own| words.split(' ').any(|word| word == own));
         WORDS

@@ -27,6 +27,7 @@ fn bench(kind: BenchKind, points: Vec<Point>) -> Bench {
         turning: None,
         idle_options: Vec::new(),
         record_drifts: false,
+        holds_speed: false,
         rests: Vec::new(),
         points,
     }
@@ -48,7 +49,7 @@ fn sweep(volts: f64, sag: f64, k: f64, throttles: impl Iterator<Item = f64>, noi
             imbalance: 0.0,
             power_w: f64::NAN,
             shaft_w: f64::NAN,
-            rpm: f64::NAN,
+            rpm: [f64::NAN; 2],
             cells: [f64::NAN; 4],
         }
     };
@@ -132,7 +133,7 @@ fn torque_that_changes_its_sign_has_an_exponent_too() {
                 imbalance: 0.0,
                 power_w: f64::NAN,
                 shaft_w: f64::NAN,
-                rpm: f64::NAN,
+                rpm: [f64::NAN; 2],
                 cells: [f64::NAN; 4],
             }
         };
