@@ -33,6 +33,9 @@ const BEGINNINGS: [(&[u8], &str); 12] = [
     (b"\x1f\x8b", "a packed file (unpack it first)"),
 ];
 
+/// Beginnings of scripts.
+const SCRIPTS: [&str; 5] = ["#!", "--", "import ", "from ", "local "];
+
 /// What a text is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Content {
@@ -128,6 +131,9 @@ pub fn of(text: &str) -> Content {
         (0, 0) => {}
         (px4, ardupilot) if px4 >= ardupilot => return Content::Px4,
         _ => return Content::Ardupilot,
+    }
+    if SCRIPTS.iter().any(|begin| text.starts_with(begin)) {
+        return Content::Foreign("a script, of which cargo mixer import reads PX4's `param set` alone");
     }
     let first = lines().find(|line| !line.is_empty()).unwrap_or_default();
     match first.contains([',', ';', '\t']) {

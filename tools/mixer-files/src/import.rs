@@ -100,6 +100,10 @@ pub fn import(file: &Source, pair: Option<&Source>, options: &Options<'_>) -> Re
     let frame = checklist::in_words(&frame.collect::<Vec<_>>()).join("; ");
     imported.notes.push(format!("the frame is {frame}"));
     imported.notes.extend(pairs::alone(&units));
+    let by_height = imported.has_places && options.upper.is_empty();
+    imported
+        .notes
+        .extend(pairs::upside_down(&units).filter(|_| by_height));
     let places: Vec<[f64; 3]> = units.iter().map(|unit| unit.position_m).collect();
     imported
         .notes
@@ -126,7 +130,7 @@ pub fn import(file: &Source, pair: Option<&Source>, options: &Options<'_>) -> Re
 fn read(file: &Source, arm_m: Option<f64>) -> Result<Imported, String> {
     let mut imported = match content::of(&file.text) {
         Content::Betaflight => betaflight::import::read(file, arm_m)?,
-        other @ (Content::Airframe | Content::Pair | Content::Foreign(_)) => {
+        other @ (Content::Airframe | Content::Pair | Content::Table | Content::Foreign(_)) => {
             return Err(format!("{}: this is {}", file.name, other.description()));
         }
         _ => of_parameters(file, arm_m)?,
@@ -151,6 +155,7 @@ fn of_parameters(file: &Source, arm_m: Option<f64>) -> Result<Imported, String> 
         ));
     };
     imported.notes.extend(outputs::order(&parameters));
+    imported.notes.extend(parameters.includes());
     let pulses = outputs::own_pulses(&parameters);
     for rotor in &mut imported.rotors {
         let own = pulses.iter().find(|(motor, _)| *motor == rotor.channel);

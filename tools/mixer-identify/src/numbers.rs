@@ -82,7 +82,8 @@ const TORQUE_AT_LOWEST: &str =
 const LOWER_OVER_UPPER: &str =
     "thrust of the lower rotor over the upper one's at equal throttles, per torque where it is known";
 const LOWEST: &str = "thrust at the lowest throttle over the greatest";
-const GROWS: &str = "power of the throttle with which thrust grows from middle to highest throttle, at one voltage";
+const GROWS: &str =
+    "power of the throttle with which thrust grows from middle to highest throttle, at one voltage";
 /// Air in which nothing else is known, kg/m3.
 const AIR: f64 = 1.2;
 
@@ -344,9 +345,14 @@ impl<'a> Run<'a> {
     fn growth(&self) -> Option<[f64; 2]> {
         let (low, high) = (self.equal.first()?.0, self.equal.last()?.0);
         let distance = |(t, _): &&(f64, &Point)| (t - 0.5 * (low + high)).abs();
-        let middle = self.equal.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
+        let middle = self
+            .equal
+            .iter()
+            .min_by(|a, b| distance(a).total_cmp(&distance(b)));
         let [(from, a), (to, b)] = [middle?, self.equal.last()?];
-        let sag = Some(a.voltage / b.voltage).filter(|sag| sag.is_finite()).unwrap_or(1.0);
+        let sag = Some(a.voltage / b.voltage)
+            .filter(|sag| sag.is_finite())
+            .unwrap_or(1.0);
         let thrust = libm::pow(sag, TYPICAL_EXPONENT) * b.thrust / a.thrust;
         let growth = libm::log(thrust) / libm::log(to / from);
         exact(growth).filter(|_| *to > 1.2 * from && !self.bench.holds_speed)
@@ -358,7 +364,10 @@ impl<'a> Run<'a> {
             None => [p.thrust, p.torque],
             Some(_) => [p.cells[rotor].abs(), p.cells[2 + rotor]],
         };
-        let most = self.points.iter().max_by(|a, b| own(a)[0].total_cmp(&own(b)[0]))?;
+        let most = self
+            .points
+            .iter()
+            .max_by(|a, b| own(a)[0].total_cmp(&own(b)[0]))?;
         let ([f, q], n) = (own(most), most.rpm[rotor] / 60.0);
         let air = self.bench.air.as_ref().map_or(AIR, |air| air.density_kg_m3);
         let value = libm::pow(f, 5.0) / (libm::pow(q, 4.0) * air * n * n);

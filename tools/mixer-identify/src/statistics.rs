@@ -24,7 +24,9 @@ pub(crate) fn greatest(values: &[f64]) -> f64 {
 /// The mean of the finite ones, of equal ones that itself in every digit; NaN where there are none.
 pub(crate) fn mean_of_finite(values: impl IntoIterator<Item = f64>) -> f64 {
     let mut finite = values.into_iter().filter(|x| x.is_finite());
-    let Some(first) = finite.next() else { return f64::NAN };
+    let Some(first) = finite.next() else {
+        return f64::NAN;
+    };
     let (sum, count) = finite.fold((0.0, 1.0), |(sum, count), x| (sum + (x - first), count + 1.0));
     first + sum / count
 }

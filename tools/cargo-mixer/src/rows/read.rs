@@ -213,8 +213,11 @@ struct Columns {
 impl Columns {
     fn new(fields: &[&str], required: Vec<String>, header: &str) -> Result<Self, String> {
         let place = |name: &str| fields.iter().position(|field| *field == name);
-        let known =
-            |name: &str| required.iter().any(|column| column == name) || [VOLTAGE, DENSITY].contains(&name);
+        // `wrench` takes what `mix` writes.
+        let known = |name: &str| {
+            let is_answer = name.starts_with("achieved_") || name == "saturation";
+            is_answer || required.iter().any(|column| column == name) || [VOLTAGE, DENSITY].contains(&name)
+        };
         let missing = required.iter().filter(|name| place(name).is_none());
         let missing: Vec<&str> = missing.map(String::as_str).collect();
         if !missing.is_empty() {

@@ -98,6 +98,22 @@ pub(super) fn alone(units: &[Unit]) -> Option<String> {
     }
 }
 
+/// The doubt where every upper rotor has the higher output: PX4's own frames count the upper ones first.
+pub(super) fn upside_down(units: &[Unit]) -> Option<String> {
+    let pairs = units
+        .iter()
+        .filter_map(|unit| Some((unit.channels.0, unit.channels.1?)));
+    let pairs: Vec<(usize, usize)> = pairs.collect();
+    let lower: Vec<String> = pairs.iter().map(|(_, lower)| lower.to_string()).collect();
+    (pairs.len() > 1 && pairs.iter().all(|(upper, lower)| upper > lower)).then(|| {
+        format!(
+            "by their PZ, which counts downwards, rotors {0} are the lower ones: if it was counted upwards, they are the upper ones: \
+             --upper {0}",
+            lower.join(",")
+        )
+    })
+}
+
 fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

@@ -15,6 +15,8 @@ pub(crate) struct Parameters {
     file: String,
     /// Each with its line.
     values: BTreeMap<String, (f64, u32)>,
+    /// Lines that include another file.
+    included: Vec<String>,
 }
 
 /// Longest piece of a bad line in a message, characters.
@@ -35,6 +37,7 @@ impl Parameters {
         let mut parameters = Parameters {
             file: file.clone(),
             values: BTreeMap::new(),
+            included: Vec::new(),
         };
         for (statement, number) in statements {
             let words = words(statement);
@@ -45,6 +48,12 @@ impl Parameters {
             };
             let (name, value) = match *words {
                 [] => continue,
+                ["@include", name] => {
+                    parameters
+                        .included
+                        .push(format!("{file}:{number}: @include {name}"));
+                    continue;
+                }
                 [vehicle, _, name, value, _] if vehicle.parse::<u32>().is_ok() => (name, value.parse()),
                 [name, value] => (name, value.parse()),
                 // A type, `@READONLY`, or a script's `fail`; not the rest of a number with a decimal comma.
@@ -60,7 +69,7 @@ impl Parameters {
                 Err(_) => {
                     let piece: String = statement.trim().chars().take(LONGEST_PIECE).collect();
                     return Err(format!(
-                        "{file}:{number}: `{piece}` is no parameter: NAME,VALUE with a number, or a line of QGroundControl's"
+                        "{file}:{number}: `{piece}` is no parameter: NAME,VALUE with a number, or a line of QGroundControl's; a remark stands behind #"
                     ));
                 }
             }
@@ -91,6 +100,14 @@ impl Parameters {
             Some((_, line)) => format!("{}:{line}", self.file),
             None => self.file.clone(),
         }
+    }
+
+    /// The note on files that are included.
+    pub(crate) fn includes(&self) -> Option<String> {
+        let what = (!self.included.is_empty()).then(|| self.included.join(", "))?;
+        Some(format!(
+            "{what} is passed over: what it sets is not read, unless it is copied into this file"
+        ))
     }
 
     pub(crate) fn count(&self) -> usize {

@@ -343,7 +343,10 @@ impl Columns {
             let slot = self.slot(quantity, side);
             if let Some(first) = slot {
                 // Two columns for one role: guessing would be silent. Detail of the first two.
-                let (same, second) = (first.clone(), scaled(index, heading, name, quantity, role, by_hand));
+                let (same, second) = (
+                    first.clone(),
+                    scaled(index, heading, name, quantity, role, by_hand),
+                );
                 let (first, raw) = (&first.name, &name.raw);
                 let both = format!("both look like the {role}");
                 if !aside && !lacks.iter().any(|(what, _)| what.ends_with(&both)) {

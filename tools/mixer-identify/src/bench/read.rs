@@ -183,7 +183,10 @@ pub fn read(name: &str, bytes: &[u8], reading: &Reading) -> Result<Log, Refusal>
         ),
     })?;
     let mut decimals = vec!['.'; header.len()];
-    for column in columns.all().chain(columns.twins.iter().flat_map(|twin| &twin.columns)) {
+    for column in columns
+        .all()
+        .chain(columns.twins.iter().flat_map(|twin| &twin.columns))
+    {
         decimals[column.index] = sheet.decimal(column.index).map_err(|(line, number)| {
             Refusal::of(
                 format!("{name}:{line}"),
@@ -206,7 +209,11 @@ pub fn read(name: &str, bytes: &[u8], reading: &Reading) -> Result<Log, Refusal>
             .map_or(0, |last| last + 1),
         least: if sheet.by_blanks { header.len() } else { 0 },
     };
-    if let Some(twin) = columns.twins.iter().find(|twin| cells.differ(&twin.columns, &sheet)) {
+    if let Some(twin) = columns
+        .twins
+        .iter()
+        .find(|twin| cells.differ(&twin.columns, &sheet))
+    {
         return Err(Columns::refusal(&place, &header, vec![twin.lack.clone()]));
     }
     let (mut samples, mut refused, mut asides, mut air) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());

@@ -368,7 +368,10 @@ fn uncertainty(
         brought.map_or(0.0, |(from, to)| by_voltage(EXPONENT_DEVIATION, from, to))
     });
     let of_voltage = of_voltage.fold(0.0, f64::max);
-    let beyond = runs.iter().map(|run| throttle.max - run.end()).fold(0.0, f64::max);
+    let beyond = runs
+        .iter()
+        .map(|run| throttle.max - run.end())
+        .fold(0.0, f64::max);
     let unequal =
         UNEQUAL_PERCENT * libm::log(full_thrusts(runs).map_or(1.0, |[upper, lower]| lower / upper)).abs();
     let adding = [
