@@ -21,6 +21,7 @@ use mixer_compiler::diagnostic::content::{self, Content};
 use mixer_compiler::model;
 use mixer_compiler::{Source, symmetry};
 use mixer_facts::checklist;
+use mixer_identify::bench::header::{ByHand, known};
 use mixer_identify::pair_file::PairFile;
 
 use crate::params::bench_pulses;
@@ -128,9 +129,20 @@ pub fn import(file: &Source, pair: Option<&Source>, options: &Options<'_>) -> Re
 }
 
 fn read(file: &Source, arm_m: Option<f64>) -> Result<Imported, String> {
+    let columns = file
+        .text
+        .lines()
+        .next()
+        .unwrap_or_default()
+        .split([',', ';', '\t']);
+    let columns: Vec<String> = columns.map(str::to_owned).collect();
     let mut imported = match content::of(&file.text) {
+        _ if known(&columns, &ByHand::default()) > 1 => {
+            let table = Content::Table.description();
+            return Err(format!("{}: this is {table}", file.name));
+        }
         Content::Betaflight => betaflight::import::read(file, arm_m)?,
-        other @ (Content::Airframe | Content::Pair | Content::Table | Content::Foreign(_)) => {
+        other @ (Content::Airframe | Content::Pair | Content::Foreign(_)) => {
             return Err(format!("{}: this is {}", file.name, other.description()));
         }
         _ => of_parameters(file, arm_m)?,

@@ -360,7 +360,7 @@ pub fn prepare(log: Log, how: &Preparation) -> Result<Bench, Refusal> {
     }
     let may_lack_torque = how.is_correction || turned.one_signal;
     if turned.kind == BenchKind::SingleRotor || may_lack_torque {
-        notes.extend(tare::constant_torque(&mut samples, turned.rotors));
+        notes.extend(tare::no_torque(&mut samples, turned.rotors));
     }
     let (streaming, mut settling_rows) = (plateau::is_streaming(&samples), 0);
     if streaming {

@@ -307,6 +307,9 @@ fn stand_in(columns: &Columns, by_hand: &ByHand) -> Option<String> {
     ))
 }
 
+/// Letters that make a cell a word, not a value with a letter astray.
+const WORD: usize = 4;
+
 /// Why a row is none of measurements.
 fn aside(record: &csv::StringRecord) -> Option<&'static str> {
     const SUMMARIES: &str = "average averages avg mean max maximum min minimum total sum std median stddev mittelwert \
@@ -318,11 +321,20 @@ fn aside(record: &csv::StringRecord) -> Option<&'static str> {
         .any(|summary| summary.eq_ignore_ascii_case(first))
     {
         true => Some("a summary of other rows"),
-        false => match record.iter().filter_map(Cell::of).filter(Cell::is_number).count() {
-            0 => Some("there is no number in it"),
-            1 => Some("there is one number in it"),
-            _ => None,
-        },
+        false => {
+            let is_number = |cell: &&str| Cell::of(cell).is_some();
+            let is_text = |cell: &str| cell.chars().filter(|c| c.is_alphabetic()).count() >= WORD;
+            match record.iter().filter(is_number).count() {
+                0 => Some("there is no number in it"),
+                1 if record
+                    .iter()
+                    .any(|cell| Cell::of(cell).is_none() && is_text(cell)) =>
+                {
+                    Some("a remark")
+                }
+                _ => None,
+            }
+        }
     }
 }
 

@@ -107,16 +107,15 @@ pub(super) fn examine(
     tare
 }
 
-/// Takes a torque that is the same in every row for one that was not measured.
-pub(super) fn constant_torque(samples: &mut [Sample], turning: &[usize]) -> Option<String> {
+/// Takes a torque of 0 in every row for one that was not measured.
+pub(super) fn no_torque(samples: &mut [Sample], turning: &[usize]) -> Option<String> {
     let own = CELLS[3..].iter().enumerate();
     let own = own.filter(|(k, _)| *k == 0 || turning.contains(&(k - 1)));
-    let told = own.filter_map(|(_, (name, unit, _, cell))| {
-        let [low, high] = extent(samples.iter_mut().map(|s| *cell(s)).filter(|q| q.is_finite()));
-        let is_constant = low == high && samples.len() > 1;
-        is_constant.then(|| {
+    let told = own.filter_map(|(_, (name, _, _, cell))| {
+        let is_none = extent(samples.iter_mut().map(|s| *cell(s)).filter(|q| q.is_finite())) == [0.0; 2];
+        is_none.then(|| {
             samples.iter_mut().for_each(|s| *cell(s) = f64::NAN);
-            format!("the {name} is {low} {unit} in every row: taken as not measured")
+            format!("the {name} is 0 in every row: taken as not measured")
         })
     });
     told.last()

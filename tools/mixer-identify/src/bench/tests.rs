@@ -143,7 +143,7 @@ fn numbers_and_units_in_cells() {
             ),
             (
                 "Throttle (%),Thrust (g)\n40,#NV\n70,n/a\n100,2040\n",
-                Refused(&["2 of 3 rows are refused", "the thrust is empty"]),
+                Noted("2 of 3 rows are passed over: no load cell has a value in them"),
             ),
             (
                 "Throttle (%),Thrust (g),Voltage (V)\n40,820,-\n100,2040,NaN\n",
@@ -408,7 +408,7 @@ fn maps_of_pairs() {
         (
             with("motor1,motor2,F,Q"),
             Refused(&[
-                "no throttle column; no thrust column; no torque column",
+                "no throttle column; no thrust column",
                 "--column lower=HEADER",
             ]),
         ),

@@ -229,7 +229,10 @@ fn sides_by_words_of_three_languages_and_in_the_airs_way() {
     }
     // A side that no word says: the mend names no column for it.
     let refused = find_by_hand("gas nord,gas sud,thrust_n,torque_nm", &ByHand::default()).unwrap_err();
-    assert_eq!(refused.needed, "--column upper=HEADER and --column lower=HEADER");
+    assert_eq!(
+        refused.needed,
+        "--column throttle=\"gas sud\" of one rotor; of two --column upper=HEADER and --column lower=HEADER"
+    );
 }
 
 /// Columns of one name are told by their numbers, and a name that two have is refused.
