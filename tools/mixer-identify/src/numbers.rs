@@ -130,6 +130,12 @@ const SIZES: [Number; 10] = [
         }, [
             "propellers of 4 to 40 inch have that: a unit is another one, or this is no run of ONE rotor",
             "the units of both: --unit thrust=UNIT, --unit torque=UNIT; where one signal drives both rotors of a pair, PRIOR"]),
+    number(LOWER_OVER_UPPER, [0.45, f64::INFINITY], NEVER,
+        lower_over_upper, ["the stand of the lower rotor is in another unit than that of the upper one", "--unit lower_thrust=UNIT"]),
+    number(LOWER_OVER_UPPER, [f64::NEG_INFINITY, 1.05], NEVER,
+        lower_over_upper, [
+            "the one taken as upper works in the wake of the other, or its stand is in another unit",
+            "--swap exchanges the rotors; else --unit upper_thrust=UNIT"]),
     number("fifth power of thrust over torque to the fourth, density and speed squared, T^5 / (Q^4 rho n^2),", [1.3e3, 1.7e4], NEVER,
         |run| {
             let rotors = [0, 1].into_iter().filter_map(|rotor| run.without_diameter(rotor));
@@ -151,12 +157,6 @@ const SIZES: [Number; 10] = [
         |run| run.single(|p, d| p.thrust / (AIR * libm::pow(p.rpm[0] / 60.0 * d * d, 2.0))), [
             "the diameter is not the propeller's (its radius, another unit), or the speed not the rotor's",
             "--diameter METRE from tip to tip; speed in revolutions per minute of the rotor, not of the motor's field"]),
-    number(LOWER_OVER_UPPER, [0.45, f64::INFINITY], NEVER,
-        lower_over_upper, ["the stand of the lower rotor is in another unit than that of the upper one", "--unit lower_thrust=UNIT"]),
-    number(LOWER_OVER_UPPER, [f64::NEG_INFINITY, 1.05], NEVER,
-        lower_over_upper, [
-            "the one taken as upper works in the wake of the other, or its stand is in another unit",
-            "--swap exchanges the rotors; else --unit upper_thrust=UNIT"]),
 ];
 
 #[rustfmt::skip]

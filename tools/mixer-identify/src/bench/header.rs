@@ -321,7 +321,11 @@ impl Columns {
             };
             Some((index, quantity, side))
         };
-        let places: Vec<_> = names.iter().enumerate().filter_map(place).collect();
+        let mut places: Vec<_> = names.iter().enumerate().filter_map(place).collect();
+        let is_thrust = |at: &(usize, Quantity, _)| at.1 == Thrust && !names[at.0].is_force();
+        if places.iter().any(is_thrust) {
+            places.retain(|at| at.1 != Thrust || is_thrust(at));
+        }
         // Beside a column of the quantity one in a unit of something else, as the load cell's millivolts, is another's.
         let is_other = |&(index, quantity, _): &(usize, Quantity, Option<usize>)| {
             let unit = names[index].unit.as_ref().or(headings[index].below.as_ref());

@@ -51,7 +51,7 @@ const FIRST: [&str; 2] = ["left a", "right b"];
 fn side_of(words: [&str; 2], word: &str) -> Option<usize> {
     words
         .iter()
-        .position(|words| words.split(' ').any(|known| known == word))
+        .position(|words| of_any(words, word))
 }
 
 impl Name {
@@ -101,7 +101,7 @@ impl Name {
             .filter(|unit| units::scale(Quantity::Speed, unit).is_some());
         let mut words = self
             .words()
-            .filter(|word| word.len() > 1 && !ELECTRICAL.split(' ').any(|of| of == *word));
+            .filter(|word| word.len() > 1 && !of_any(ELECTRICAL, word));
         match self.text.as_str() {
             text if text.contains("servo") => None,
             _ if unit.is_some() || self.words().any(|word| word == "rpm") => Some(Quantity::Speed),
@@ -128,19 +128,23 @@ impl Name {
         {
             return Some(Quantity::Throttle);
         }
-        let mut words = self
-            .words()
-            .filter(|word| !word.starts_with(|c: char| c.is_ascii_digit()) && !of_any(BESIDE_FORCE, word));
-        let is_force = matches!((words.next(), words.next()), (Some("force" | "load"), None));
-        let in_newtons = |unit: &String| units::scale(Quantity::Thrust, unit).is_some();
-        if is_force && self.unit.as_ref().is_none_or(in_newtons) {
+        if self.is_force() {
             return Some(Quantity::Thrust);
         }
-        let is_of = |words: &str| self.words().any(|own| words.split(' ').any(|word| word == own));
+        let is_of = |words: &str| self.words().any(|own| of_any(words, own));
         WORDS
             .iter()
             .find(|(_, words)| is_of(words))
             .map(|(quantity, _)| *quantity)
+    }
+
+    /// Whether it is a thrust where no column is named so: a force or a load, along the axis.
+    pub(super) fn is_force(&self) -> bool {
+        let is_beside = |word: &&str| of_any(BESIDE_FORCE, word) || word.bytes().all(|b| b.is_ascii_digit());
+        let mut words = self.words().filter(|word| !is_beside(word));
+        let in_newtons = |unit: &String| units::scale(Quantity::Thrust, unit).is_some();
+        matches!((words.next(), words.next()), (Some("force" | "load"), None))
+            && self.unit.as_ref().is_none_or(in_newtons)
     }
 
     /// Words of the prefix and of the rest.
