@@ -119,7 +119,7 @@ type Outside = [&'static str; 2];
 
 #[rustfmt::skip]
 const SIZES: [Number; 10] = [
-    number("shaft power over electrical power", [0.4, 1.0], NEVER,
+    number("shaft power over electrical power", [0.4, 1.03], NEVER,
         |run| exact(median(run.points.iter().map(|p| p.shaft_w / p.power_w))?), [
             "the torque is a force at an arm, of another arm or in another unit, the current of one rotor, or the speed that of the motor's field",
             "torque in N m (force times arm) in its column, or --unit torque=UNIT; current and speed of all rotors that turn"]),
@@ -136,7 +136,7 @@ const SIZES: [Number; 10] = [
         lower_over_upper, [
             "the one taken as upper works in the wake of the other, or its stand is in another unit",
             "--swap exchanges the rotors; else --unit upper_thrust=UNIT"]),
-    number("fifth power of thrust over torque to the fourth, density and speed squared, T^5 / (Q^4 rho n^2),", [1.3e3, 1.7e4], NEVER,
+    number("T^5 / (Q^4 rho n^2) of thrust, torque, density and speed (1/s)", [1.2e3, 1.8e4], NEVER,
         |run| {
             let rotors = [0, 1].into_iter().filter_map(|rotor| run.without_diameter(rotor));
             exact(rotors.max_by_key(|x| (1e3 * libm::log(x / 4.7e3).abs()) as i64)?)
@@ -191,7 +191,7 @@ const SHAPE: [Number; 6] = [
         |run| run.lowest(), [
             "rotors may stand still there, or the load cells read something at rest",
             "without the rows below IDLE, where both turn; else set the load cells to zero at rest"]),
-    number("thrust over the speeds squared at the lowest throttle over that at the highest", [0.5, 1.3], NEVER,
+    number("thrust over the speeds squared at the lowest throttle over that at the highest", [0.2, 1.45], NEVER,
         |run| {
             let at = |p: &Point| p.thrust / p.rpm.iter().map(|n| n * n).sum::<f64>();
             let [(_, low), (_, high)] = [run.equal.first()?, run.equal.last()?];
