@@ -114,8 +114,8 @@ pub fn with_runs(
     air.exponents = exponents.map_or(of_air, |k| k.map(|k| k - 1.0));
     let has = |kind| benches.iter().any(|b| b.kind == kind);
     let read = benches.iter().chain(runs.iter().flatten());
-    let mut warnings: Vec<String> = read.flat_map(Bench::offset_notes).collect();
-    warnings.extend(air.doubt());
+    let offsets: Vec<String> = read.flat_map(Bench::offset_notes).collect();
+    let mut warnings = Vec::new();
     let pair = if has(BenchKind::Pair) {
         let pair = pair::identify(&benches, voltage.as_ref(), wishes, &anomalies)?;
         warnings.extend(pair.warnings.clone());
@@ -127,6 +127,7 @@ pub fn with_runs(
         no_runs(&runs)?;
         None
     };
+    warnings.extend(offsets.into_iter().chain(air.doubt()));
     if let Some(v) = &voltage {
         warnings.extend(voltage_warnings(v, wishes.pack_v.is_some()));
         warnings.extend(sag(&benches, v));

@@ -134,7 +134,8 @@ pub(crate) fn identify(
         warnings.extend(asked);
     }
     let lower_is_stronger = is_above && !at_rest;
-    warnings.extend(anomalies.into_iter().map(Anomaly::sentence));
+    // A short report has room for the first ones.
+    warnings.splice(0..0, anomalies.into_iter().map(Anomaly::sentence));
     let mean_v = mean_voltage(points.iter().map(|p| p.point)).map(|(mean, _)| mean);
     let brought = normalised_to_v.zip(mean_v).zip(voltage);
     let brought = brought.map_or([0.0; 2], |((to, from), voltage)| {
