@@ -510,9 +510,8 @@ fn moving(samples: &[Sample], currents: [f64; 2]) -> Option<[bool; 2]> {
 /// Passes over rows, or stops of a streaming log, in which no load cell has a value: loggers are faster than load cells.
 fn without_load_cell(name: &str, streaming: bool, samples: &mut Vec<Sample>) -> Option<String> {
     let has = |s: &Sample| {
-        let cells = [s.thrust, s.torque].into_iter();
-        let mut cells = cells.flat_map(|of| of.rotors.into_iter().chain([of.whole]));
-        cells.any(f64::is_finite)
+        let cells = [s.thrust, s.torque].map(|of| [of.whole, of.rotors[0], of.rotors[1]]);
+        cells.as_flattened().iter().any(|x| x.is_finite())
     };
     let (all, first) = (samples.len(), samples.iter().find(|s| !has(s))?.line);
     if samples.iter().any(has) {
@@ -638,30 +637,28 @@ fn supplied(
     let Some(median) = median(samples.iter().map(|s| s.voltage[rotor])) else {
         return Ok(());
     };
-    let [least, most] = quantity::VOLTAGE.range;
-    if median < least {
-        notes.push(format!(
-            "the voltage is {median} V in most rows: taken as not measured"
-        ));
-        for sample in samples {
-            (sample.voltage[rotor], sample.power_w) = (f64::NAN, f64::NAN);
+    match quantity::VOLTAGE.check(median) {
+        Err(_) if median < quantity::VOLTAGE.range[0] => {
+            notes.push(format!(
+                "the voltage is {median} V in most rows: taken as not measured"
+            ));
+            for sample in samples {
+                (sample.voltage[rotor], sample.power_w) = (f64::NAN, f64::NAN);
+            }
         }
-    } else if let (Err(told), true) = (quantity::VOLTAGE.check(median), median > most) {
-        let role = ["voltage", "lower_voltage"][rotor];
-        let needed = format!("volts in the column, or --unit {role}=mV");
-        return Err(Refusal::of(name, format!("the voltage: {told}"), needed));
-    } else if turns {
-        samples.retain(|s| {
-            let off = s.voltage[rotor] <= OFF * median;
+        Err(told) => {
+            let needed = format!("volts, or --unit {}=mV", ["voltage", "lower_voltage"][rotor]);
+            return Err(Refusal::of(name, format!("the voltage: {told}"), needed));
+        }
+        Ok(_) if turns => samples.retain(|s| {
+            let (own, off) = (s.voltage[rotor], s.voltage[rotor] <= OFF * median);
             if off {
-                let reason = format!(
-                    "the voltage is {} V, in the middle of the rows {median} V",
-                    s.voltage[rotor]
-                );
+                let reason = format!("the voltage is {own} V, in the middle of the rows {median} V");
                 refused.push(RefusedRow::new(name, s.line, Fault::new("voltage off", reason)));
             }
             !off
-        });
+        }),
+        Ok(_) => {}
     }
     Ok(())
 }

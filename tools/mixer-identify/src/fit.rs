@@ -189,8 +189,6 @@ pub struct Fit {
     pub residual_max: f64,
     /// Root of the mean squared leave-one-out error, N or N m.
     pub leave_one_out_rms: f64,
-    /// Greatest absolute leave-one-out error, N or N m.
-    pub leave_one_out_max: f64,
     /// Greatest absolute measured value, N or N m: the scale of percentages.
     pub full_scale: f64,
     /// 2-norm condition number of the matrix of monomials.
@@ -240,7 +238,6 @@ pub fn fit(design: &Design, y: &[f64], throttle_box: ThrottleBox) -> Fit {
     let sst: f64 = y.iter().map(|y| (y - mean) * (y - mean)).sum();
     let sigma = (sse / degrees_of_freedom as f64).sqrt();
     let t = student_t_975(degrees_of_freedom);
-    let left_out = left_out(design, &residuals);
     let half_width = |factor: f64| t * sigma * (1.0 + factor * factor).sqrt();
     let [least, _] = extent(throttle_box.square(20).map(|[u, l]| design.factor(u, l)));
     let (worst, greatest_at) = design.worst_factor(throttle_box);
@@ -250,8 +247,7 @@ pub fn fit(design: &Design, y: &[f64], throttle_box: ThrottleBox) -> Fit {
         r2: if sst > 0.0 { 1.0 - sse / sst } else { 0.0 },
         residual_rms: (sse / n as f64).sqrt(),
         residual_max: greatest(&residuals),
-        leave_one_out_rms: rms(left_out.iter().copied()),
-        leave_one_out_max: greatest(&left_out),
+        leave_one_out_rms: rms(left_out(design, &residuals)),
         full_scale: greatest(y),
         condition_number: design.condition_number(),
         points: n,

@@ -9,7 +9,7 @@ use crate::fit::balance::balanced;
 use crate::fit::hundredths;
 use crate::fit::pair::{self, Pair};
 use crate::fit::power::{self, Power};
-use crate::fit::voltage::{self, Exponent, PLAUSIBLE, Voltage};
+use crate::fit::voltage::{self, Exponent, Voltage};
 use crate::fit::wishes::FitOptions;
 use crate::numbers::{self, Anomaly};
 use crate::refusal::Refusal;
@@ -85,8 +85,7 @@ pub fn with_runs(
     mut runs: [Option<Bench>; 2],
     wishes: &FitOptions,
 ) -> Result<Identified, Refusal> {
-    distinct_names(&benches)?;
-    no_copies(&benches)?;
+    each_once(&benches)?;
     two_signals(&benches)?;
     let of_air = match wishes.closed_loop {
         true => [1.0; 2],
@@ -262,41 +261,25 @@ fn two_signals(benches: &[Bench]) -> Result<(), Refusal> {
     }
 }
 
-/// Rows are named by file name and line, so names must differ.
-fn distinct_names(benches: &[Bench]) -> Result<(), Refusal> {
-    let is_twice = |(i, b): &(usize, &Bench)| benches[..*i].iter().any(|a| a.file == b.file);
-    match benches.iter().enumerate().find(is_twice) {
-        None => Ok(()),
-        Some((_, b)) => Err(Refusal::of(
-            &b.file,
-            "the name is given twice",
-            "each file once, under its own name",
-        )),
-    }
-}
-
-/// Refuses a file that is a copy of another: it repeats nothing, and narrows every interval.
-fn no_copies(benches: &[Bench]) -> Result<(), Refusal> {
+/// Refuses a file of another's name, since rows are named by name and line, and a copy of another: it repeats nothing, and
+/// narrows every interval.
+fn each_once(benches: &[Bench]) -> Result<(), Refusal> {
     let rows = |bench: &Bench| {
-        format!(
-            "{:?}",
-            bench
-                .points
-                .iter()
-                .map(|p| Point { line: 0, ..*p })
-                .collect::<Vec<_>>()
-        )
+        let points = bench.points.iter().map(|p| Point { line: 0, ..*p });
+        format!("{:?}", points.collect::<Vec<_>>())
     };
-    let all: Vec<String> = benches.iter().map(rows).collect();
-    let is_copy = |k: &usize| all[..*k].contains(&all[*k]);
-    match (0..all.len()).find(is_copy) {
-        None => Ok(()),
-        Some(k) => Err(Refusal::of(
-            &benches[k].file,
-            "its rows are those of another file in every digit: a copy is no repeat",
-            "each file once",
-        )),
+    let all: Vec<[String; 2]> = benches.iter().map(|b| [b.file.clone(), rows(b)]).collect();
+    for (k, [name, rows]) in all.iter().enumerate() {
+        let reason = match () {
+            () if all[..k].iter().any(|other| other[0] == *name) => "the name is given twice",
+            () if all[..k].iter().any(|other| other[1] == *rows) => {
+                "its rows are those of another file in every digit: a copy is no repeat"
+            }
+            () => continue,
+        };
+        return Err(Refusal::of(name, reason, "each file once, under its own name"));
     }
+    Ok(())
 }
 
 /// The exponents from the pair's own maps if these tell any, else from single rotors.
@@ -389,8 +372,8 @@ fn sag(benches: &[Bench], voltage: &Voltage) -> Option<String> {
             100.0 * (1.0 - libm::pow(1.0 - sag, torque))
         ),
         None => format!(
-            "the supply sagged by {percent:.1} % within a map, which the map includes: a [voltage] written beside it by \
-             hand counts that sag twice; --voltage-exponent 1.75 brings the rows to one voltage and writes [voltage]"
+            "the supply sagged by {percent:.1} % within a map, which the map includes: --voltage-exponent 1.75 brings the \
+             rows to one voltage and writes [voltage]"
         ),
     })
 }
@@ -403,16 +386,15 @@ pub(crate) fn bench_range([low, high]: [f64; 2]) -> String {
 }
 
 fn voltage_warnings(voltage: &Voltage, pack_is_known: bool) -> Vec<String> {
-    let ([low, high], [least, most]) = (voltage.range_v, PLAUSIBLE);
     let channels = voltage.channels().into_iter();
     let mut told: Vec<String> = channels
         .filter_map(|(name, exponent)| match exponent {
-            Exponent::Declared { exponent, measured: Some(e) } if (exponent - e.exponent).abs() > e.ci95 => Some(format!(
+            Exponent::Declared {
+                exponent,
+                measured: Some(e),
+            } if (exponent - e.exponent).abs() > e.ci95 => Some(format!(
                 "--voltage-exponent declares {exponent} for {name}, the files themselves give {:.3} +- {:.3}",
                 e.exponent, e.ci95
-            )),
-            Exponent::Declared { exponent, .. } if !(least..=most).contains(exponent) => Some(format!(
-                "--voltage-exponent declares {exponent} for {name}, outside {least}..{most}, which no propeller has"
             )),
             Exponent::Refused { reason, needed } if voltage.varies() => Some(format!(
                 "no {name} exponent of voltage: {reason}; needed: {needed}"
@@ -423,14 +405,8 @@ fn voltage_warnings(voltage: &Voltage, pack_is_known: bool) -> Vec<String> {
             _ => None,
         })
         .collect();
-    let sag = 1.0 - low / high;
-    if matches!(voltage.thrust, Exponent::Declared { .. }) {
-        told.extend((!pack_is_known).then(|| bench_range(voltage.range_v)));
-    } else if !voltage.varies() && 0.02 < sag && sag <= SAG {
-        let sag = 100.0 * sag;
-        told.push(format!(
-            "the supply varied by {sag:.1} % ({high:.2} to {low:.2} V), which the map includes"
-        ));
+    if matches!(voltage.thrust, Exponent::Declared { .. }) && !pack_is_known {
+        told.push(bench_range(voltage.range_v));
     }
     told
 }

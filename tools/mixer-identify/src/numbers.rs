@@ -81,7 +81,6 @@ const TORQUE_AT_LOWEST: &str =
     "torque at the lowest throttle, beyond what the thrust there explains, over the greatest";
 const LOWER_OVER_UPPER: &str =
     "thrust of the lower rotor over the upper one's at equal throttles, per torque where it is known";
-const LOWEST: &str = "thrust at the lowest throttle over the greatest";
 const GROWS: &str =
     "power of the throttle with which thrust grows from middle to highest throttle, at one voltage";
 /// Air in which nothing else is known, kg/m3.
@@ -118,7 +117,7 @@ pub const TABLE: [&[Number]; 4] = [&SIZES, &ROWS, &SHAPE, &VOLTAGE];
 type Outside = [&'static str; 2];
 
 #[rustfmt::skip]
-const SIZES: [Number; 10] = [
+const SIZES: [Number; 9] = [
     number("shaft power over electrical power", [0.4, 1.03], NEVER,
         |run| exact(median(run.points.iter().map(|p| p.shaft_w / p.power_w))?), [
             "the torque is a force at an arm, of another arm or in another unit, the current of one rotor, or the speed that of the motor's field",
@@ -141,7 +140,7 @@ const SIZES: [Number; 10] = [
             let rotors = [0, 1].into_iter().filter_map(|rotor| run.without_diameter(rotor));
             exact(rotors.max_by_key(|x| (1e3 * libm::log(x / 4.7e3).abs()) as i64)?)
         }, [
-            "thrust or torque is in another unit (twice the thrust is 32 times this, twice the torque a sixteenth), or the speed not the rotor's",
+            "thrust or torque is in another unit (twice the thrust is 32 times this, twice the torque a 16th), or the speed not the rotor's",
             "the units of both: --unit thrust=UNIT, --unit torque=UNIT; speed in revolutions per minute of the rotor, not of the motor's field"]),
     // By momentum theory. A rotor in a wake has less.
     number("figure of merit (ideal over shaft power)", [0.48, 0.76], NEVER,
@@ -153,10 +152,6 @@ const SIZES: [Number; 10] = [
     // A pair by the power of one rotor has 1.1.
     number("ideal power over electrical power", [0.15, 0.8], [0.08, 0.95],
         |run| run.single(|p, d| ideal_w(p, d) / p.power_w), ONE_ROTOR),
-    number("thrust over density, speed squared and diameter to the fourth", [0.02, 0.3], NEVER,
-        |run| run.single(|p, d| p.thrust / (AIR * libm::pow(p.rpm[0] / 60.0 * d * d, 2.0))), [
-            "the diameter is not the propeller's (its radius, another unit), or the speed not the rotor's",
-            "--diameter METRE from tip to tip; speed in revolutions per minute of the rotor, not of the motor's field"]),
 ];
 
 #[rustfmt::skip]
@@ -172,7 +167,7 @@ const ROWS: [Number; 2] = [
 ];
 
 #[rustfmt::skip]
-const SHAPE: [Number; 6] = [
+const SHAPE: [Number; 5] = [
     number(GROWS, [GROWTH[0], f64::INFINITY], NEVER, |run| run.growth(), [
             "something linearised the throttle before the controller (MOT_THST_EXPO, THR_MDL_FAC; it is about 1 then), or the supply \
              reached its limit, which a column of the voltage shows",
@@ -186,11 +181,10 @@ const SHAPE: [Number; 6] = [
             let [f, q] = [run.most(|p| p.thrust), run.most(|p| p.torque)];
             exact((at.torque / q).abs() - 0.2 * at.thrust.max(0.0) / f)
         }, ZERO),
-    number(LOWEST, [-0.001, f64::INFINITY], NEVER, |run| run.lowest(), ZERO),
-    number(LOWEST, [0.001, f64::INFINITY], NEVER,
+    number("thrust at the lowest throttle over the greatest", [0.001, f64::INFINITY], NEVER,
         |run| run.lowest(), [
             "rotors may stand still there, or the load cells read something at rest",
-            "without the rows below IDLE, where both turn; else set the load cells to zero at rest"]),
+            "without the rows below IDLE, where both turn; else set the load cells to zero at rest, or record some rows at rest for --tare"]),
     number("thrust over the speeds squared at the lowest throttle over that at the highest", [0.2, 1.45], NEVER,
         |run| {
             let at = |p: &Point| p.thrust / p.rpm.iter().map(|n| n * n).sum::<f64>();
@@ -452,11 +446,8 @@ pub(crate) fn anomalies(bench: &Bench, diameter_m: Option<f64>) -> Result<Vec<An
             continue;
         }
         let [low, high] = number.limits;
-        let within = match (low.is_finite(), high.is_finite()) {
-            (true, true) => format!("{low} to {high}"),
-            (true, false) => format!("{low} and more"),
-            _ => format!("{high} at most"),
-        };
+        let within = format!("{low} to {high}").replace("-inf to", "at most");
+        let within = within.replace("to inf", "and more");
         let [cause, mend] = number.outside;
         let mend = mend
             .replace("PRIOR", &equal_commands(&[&bench.file]))

@@ -164,12 +164,6 @@ fn of_pair(statements: &mut Statements, pair: &Pair) {
     statements.more(format!(
         "the least det J is {least:.4}, at ({u:.3}, {l:.3}){proven}"
     ));
-    for region in &pair.fold.regions {
-        let ([ua, ub], [la, lb]) = (region.u, region.l);
-        statements.more(format!(
-            "det J <= 0 within u {ua:.3} .. {ub:.3}, l {la:.3} .. {lb:.3}"
-        ));
-    }
 
     statements.table = "pair";
     let (thrust, torque) = (&pair.thrust, &pair.torque);
@@ -241,33 +235,18 @@ fn of_drift(statements: &mut Statements, pair: &Pair) {
         );
     }
     if !hidden.is_empty() {
-        let mut files: Vec<&str> = hidden.iter().map(|shown| shown.file.as_str()).collect();
-        files.dedup();
-        let of = if seen.is_empty() {
-            String::new()
-        } else {
-            format!("{}: ", files.join(", "))
-        };
         let text =
             "cannot be told from throttle in the order of the rows; cargo mixer plan draws one that shows it";
-        statements.always("drift", of + text);
+        statements.always("drift", text);
     }
 }
 
 fn of_fit(fit: &Fit, unit: &str) -> String {
     let (left_out, full) = (fit.leave_one_out_rms, fit.full_scale);
     let (share, within) = (100.0 * left_out / full, &fit.prediction);
-    let terms = fit.coefficients.iter().zip(&fit.ci95);
-    let weak = match terms.filter(|(c, ci)| c.abs() < **ci).count() {
-        0 => String::new(),
-        weak => format!(
-            "; {weak} of {} coefficients are smaller than their 95 % interval: trust the map, not its single terms",
-            fit.coefficients.len()
-        ),
-    };
     format!(
         "R2 {:.5}; residual {:.5} {unit} rms, {:.5} at most; leave-one-out {left_out:.5} {unit} rms, {share:.2} % of \
-         {full:.5}; prediction +- {:.5} to {:.5} {unit}{weak}",
+         {full:.5}; prediction +- {:.5} to {:.5} {unit}",
         fit.r2, fit.residual_rms, fit.residual_max, within.least, within.greatest
     )
 }
@@ -287,14 +266,11 @@ fn of_alone(statements: &mut Statements, turning: Turning, alone: &Alone) {
         alone.file, alone.points
     );
     statements.always("rotor out", text);
-    for (name, unit, [a1, a2, a3], fit) in [
-        ("thrust", "N", alone.thrust_n, &alone.thrust),
-        ("torque", "N m", alone.torque_nm, &alone.torque),
-    ] {
+    for (name, unit, fit) in [("thrust", "N", &alone.thrust), ("torque", "N m", &alone.torque)] {
         let full = fit.full_scale;
         let [own, pair] = [fit.leave_one_out_rms, fit.of_the_pair_rms].map(|rms| 100.0 * rms / full);
         let text = format!(
-            "{name} {a1:.5} x {a2:+.5} x2 {a3:+.5} x3 {unit}: leave-one-out {own:.2} % of {full:.4} {unit}; the pair's \
+            "{name}: leave-one-out {own:.2} % of {full:.4} {unit}; the pair's \
              polynomial at zero misses this run by {pair:.2} %"
         );
         statements.more(text);
@@ -332,16 +308,8 @@ fn of_estimate(e: &Estimate) -> String {
         0 => String::new(),
         levels => format!(", {levels} levels"),
     };
-    let of_levels = |[low, median, high]: [f64; 3]| {
-        format!("; levels' median {median:.2}, quartiles {low:.2} and {high:.2}")
-    };
-    let of_halves = |[low, high]: [f64; 2]| {
-        format!("; {low:.2} in the lower half of the throttle range, {high:.2} above")
-    };
-    let (quartiles, halves) = (e.quartiles.map(of_levels), e.low_and_high_throttle.map(of_halves));
-    let [quartiles, halves] = [quartiles, halves].map(Option::unwrap_or_default);
     let (exponent, ci95, method) = (e.exponent, e.ci95, e.method);
-    format!("exponent {exponent:.3} +- {ci95:.3} (95 %), by {method}{levels}{quartiles}{halves}")
+    format!("exponent {exponent:.3} +- {ci95:.3} (95 %), by {method}{levels}")
 }
 
 fn of_power(statements: &mut Statements, found: &LeastPower) {
@@ -356,12 +324,6 @@ fn of_power(statements: &mut Statements, found: &LeastPower) {
         at.least_power_w, at.power_w, at.thrust_n
     );
     statements.always("least power", text);
-    let longer = 100.0 * (1.0 / (1.0 - 0.01 * saving) - 1.0);
-    let text = format!(
-        "that is {longer:.1} % of flight time where as many upper rotors turn one way as the other; with spins s of n units \
-         1 - (sum s / n)^2 of it is left, none where all turn alike (a Y6)"
-    );
-    statements.more(text);
     let (points, rms) = (found.points, found.residual_rms_w);
     let share = 100.0 * rms / found.full_scale_w;
     let refused = match found.power_w {

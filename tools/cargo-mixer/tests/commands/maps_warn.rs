@@ -51,7 +51,10 @@ const TRUE_OF_IT: [&str; 3] = [
 
 /// The one map before which both rotors stood still, by their speeds, and the load cells had an offset.
 const NOT_TARED: &str = "data2021_08_17_17_00_55";
-const TRUE_OF_THAT: [&str; 2] = ["--tare takes it off all rows", "the load cells read something at rest"];
+const TRUE_OF_THAT: [&str; 2] = [
+    "--tare takes it off all rows",
+    "the load cells read something at rest",
+];
 
 /// How often each was told, and what was told and is not true.
 #[derive(Default)]
@@ -286,7 +289,11 @@ fn honest(folder: &str, words: &[&str]) -> Vec<PathBuf> {
     let has = |path: &PathBuf, word: &&str| path.to_string_lossy().contains(*word);
     files.retain(|path| words.iter().any(|word| has(path, word)));
     // A drifting record, a load cell that was not set to zero, and rows that were copied over others.
-    files.retain(|path| ![DRIFTED, NOT_TARED, "modifieddata"].iter().any(|word| has(path, word)));
+    files.retain(|path| {
+        ![DRIFTED, NOT_TARED, "modifieddata"]
+            .iter()
+            .any(|word| has(path, word))
+    });
     files.sort();
     files
 }
@@ -305,12 +312,26 @@ fn laboratories() -> [Laboratory; 5] {
     };
     let maps = honest("newdexterity", &["map10x10"]);
     let runs = honest("newdexterity", &["single_rotor", "bottom_rotor"]);
-    const SPEEDS: &[&str] = &["--column", "thrust=T(N)", "--column", "torque=Q(Nm)", "--rpm-at-full", "2700"];
+    const SPEEDS: &[&str] = &[
+        "--column",
+        "thrust=T(N)",
+        "--column",
+        "torque=Q(Nm)",
+        "--rpm-at-full",
+        "2700",
+    ];
     [
         source("New Dexterity, pairs", maps, &[], inches),
         source("New Dexterity, one rotor", runs, &[], inches),
-        source("StrawsonDesign", honest("strawson", &[".csv"]), &["--kappa", "0.012"], |_| None),
-        source("pyBEMT", honest("pybemt", &["tmotor28_data"]), SPEEDS, |_| Some(0.7112)),
+        source(
+            "StrawsonDesign",
+            honest("strawson", &[".csv"]),
+            &["--kappa", "0.012"],
+            |_| None,
+        ),
+        source("pyBEMT", honest("pybemt", &["tmotor28_data"]), SPEEDS, |_| {
+            Some(0.7112)
+        }),
         source("Aerostack2", honest("aerostack2", &["steps.csv"]), &[], |_| None),
     ]
 }
@@ -320,10 +341,19 @@ const OF_A_VEHICLE: (&str, &str) = ("Aerostack2", "shaft power over electrical p
 
 /// A sentence without file, numbers and what follows a colon, to be counted.
 fn kind(sentence: &str, file: &Path) -> String {
-    let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let name = file
+        .file_name()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .into_owned();
     let sentence = sentence.replace(&name, "FILE");
-    let sentence = sentence.strip_prefix("FILE: ").unwrap_or(&sentence).replace(',', " ");
-    let words = sentence.split_whitespace().take_while(|word| !word.ends_with(':'));
+    let sentence = sentence
+        .strip_prefix("FILE: ")
+        .unwrap_or(&sentence)
+        .replace(',', " ");
+    let words = sentence
+        .split_whitespace()
+        .take_while(|word| !word.ends_with(':'));
     let words = words.filter(|word| !word.contains(|c: char| c.is_ascii_digit()));
     words.take(12).collect::<Vec<_>>().join(" ")
 }
@@ -389,9 +419,13 @@ fn alarms_of_honest_files_are_counted() {
         for (number, values, outside) in found.values() {
             let [least, most] =
                 [f64::min, f64::max].map(|of| values.iter().copied().reduce(of).expect("a value"));
-            let [low, high] = number
-                .limits
-                .map(|limit| if limit.is_finite() { limit.to_string() } else { String::new() });
+            let [low, high] = number.limits.map(|limit| {
+                if limit.is_finite() {
+                    limit.to_string()
+                } else {
+                    String::new()
+                }
+            });
             numbers += &format!(
                 "\"{}\",{low},{high},\"{}\",{},{least:.3},{most:.3},{outside}\n",
                 number.name,

@@ -77,17 +77,8 @@ pub struct Columns {
     pub sides_named: bool,
     /// Whether the user says it, of both rotors.
     pub sides_by_hand: bool,
-    /// Columns that are one if they agree in every row.
-    pub twins: Vec<Twin>,
-}
-
-/// Two columns of one quantity in two units, of which the first is read.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Twin {
-    /// Both.
-    pub columns: [Column; 2],
-    /// What is said where they do not agree, and what mends it.
-    pub lack: (String, String),
+    /// Columns in two units that are one if they agree in every row, and what is said where they do not.
+    pub(crate) twins: Vec<([Column; 2], Lack)>,
 }
 
 impl Index<Quantity> for Columns {
@@ -288,24 +279,16 @@ impl Columns {
 
     /// Why there is no electrical power, where columns are missing for it.
     pub fn no_power(&self) -> Option<String> {
-        let of_one = |named: &Column, other: &str| {
-            format!(
-                "the current of one rotor only ({:?}): --column {other}_current=HEADER names the other's",
-                named.name
-            )
-        };
         let current = &self[Quantity::Current];
-        match (
-            &self[Quantity::Voltage].rotors[0],
-            &current.whole,
-            &current.rotors,
-        ) {
-            (Some(_), Some(_), _) | (Some(_), _, [Some(_), Some(_)]) => None,
-            _ if self[Quantity::Power].complete() => None,
-            (_, None, [Some(upper), None]) => Some(of_one(upper, "lower")),
-            (_, None, [None, Some(lower)]) => Some(of_one(lower, "upper")),
-            (_, None, [None, None]) => Some("no file has the current of both rotors".into()),
-            (None, _, _) => Some("no file has the supply voltage beside the current".into()),
+        let known = self[Quantity::Voltage].rotors[0].is_some() && current.complete();
+        let one = current.rotors.iter().position(Option::is_some);
+        match one.filter(|_| !current.complete()) {
+            _ if known || self[Quantity::Power].complete() => None,
+            Some(one) => Some(format!(
+                "the current of one rotor only: --column {}_current=HEADER names the other's",
+                ["lower", "upper"][one]
+            )),
+            None => Some("no file has the supply voltage and the current of both rotors".into()),
         }
     }
 
@@ -372,10 +355,7 @@ impl Columns {
                     let (second, unknown) = second;
                     let scales = [&same, &second].map(|column| column.unit.is_some().then_some(column.scale));
                     match unknown.is_none() && scales[0] != scales[1] && !scales.contains(&None) {
-                        true => self.twins.push(Twin {
-                            columns: [same, second],
-                            lack,
-                        }),
+                        true => self.twins.push(([same, second], lack)),
                         false => lacks.push(lack),
                     }
                 }
@@ -430,22 +410,18 @@ pub fn unknown_role(role: &str) -> Refusal {
 const NEWDEXTERITY: &str = "coaxial map (newdexterity)";
 
 fn format_name(headers: &[String], names: &[Name]) -> String {
-    let has = |text: &str| names.iter().any(|n| n.text == text);
-    let any = |text: &str| headers.iter().any(|h| units::normalised(h).contains(text));
-    if has("pwm left") && has("pwm right") {
-        NEWDEXTERITY
-    } else if any("torque mz") || any("force fz") {
-        "Tyto Flight Stand"
-    } else if has("esc a") && has("esc b") {
-        "RCbenchmark 1780"
-    } else if any("esc signal") {
-        "RCbenchmark 1520/1580"
-    } else if has("upper") && has("lower") {
-        "plain"
-    } else {
-        "columns by name"
+    let has = |text: &&str| names.iter().any(|n| n.text == *text);
+    let any = |text: &&str| headers.iter().any(|h| units::normalised(h).contains(*text));
+    let is = |of: &[&str]| of.iter().all(has);
+    match () {
+        () if is(&["pwm left", "pwm right"]) => NEWDEXTERITY,
+        () if ["torque mz", "force fz"].iter().any(any) => "Tyto Flight Stand",
+        () if is(&["esc a", "esc b"]) => "RCbenchmark 1780",
+        () if any(&"esc signal") => "RCbenchmark 1520/1580",
+        () if is(&["upper", "lower"]) => "plain",
+        () => "columns by name",
     }
-    .to_string()
+    .to_owned()
 }
 
 /// Columns of one name by their numbers.

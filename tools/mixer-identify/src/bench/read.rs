@@ -185,7 +185,7 @@ pub fn read(name: &str, bytes: &[u8], reading: &Reading) -> Result<Log, Refusal>
     let mut decimals = vec!['.'; header.len()];
     for column in columns
         .all()
-        .chain(columns.twins.iter().flat_map(|twin| &twin.columns))
+        .chain(columns.twins.iter().flat_map(|(both, _)| both))
     {
         decimals[column.index] = sheet.decimal(column.index).map_err(|(line, number)| {
             Refusal::of(
@@ -209,12 +209,8 @@ pub fn read(name: &str, bytes: &[u8], reading: &Reading) -> Result<Log, Refusal>
             .map_or(0, |last| last + 1),
         least: if sheet.by_blanks { header.len() } else { 0 },
     };
-    if let Some(twin) = columns
-        .twins
-        .iter()
-        .find(|twin| cells.differ(&twin.columns, &sheet))
-    {
-        return Err(Columns::refusal(&place, &header, vec![twin.lack.clone()]));
+    if let Some(twin) = columns.twins.iter().find(|(both, _)| cells.differ(both, &sheet)) {
+        return Err(Columns::refusal(&place, &header, vec![twin.1.clone()]));
     }
     let (mut samples, mut refused, mut asides, mut air) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     for (line, record) in &sheet.rows {
@@ -242,8 +238,9 @@ pub fn read(name: &str, bytes: &[u8], reading: &Reading) -> Result<Log, Refusal>
             Err(fault) => refused.push(RefusedRow::new(name, *line, fault)),
         }
     }
-    let mut notes: Vec<String> = stand_in(&columns, by_hand).into_iter().collect();
-    notes.extend(beyond_full_speed(&mut refused, samples.len()));
+    let mut notes: Vec<String> = beyond_full_speed(&mut refused, samples.len())
+        .into_iter()
+        .collect();
     if let Some((line, what)) = asides.first() {
         let more = match asides.len() {
             1 => String::new(),
@@ -293,18 +290,6 @@ fn beyond_full_speed(refused: &mut Vec<RefusedRow>, read: usize) -> Option<Strin
     );
     refused.retain(|row| row.kind != BEYOND);
     Some(told)
-}
-
-/// What stands for the throttle.
-fn stand_in(columns: &Columns, by_hand: &ByHand) -> Option<String> {
-    let throttles = columns[Quantity::Throttle].rotors.iter().flatten();
-    let speeds = throttles.filter(|column| matches!(column.scale, Scale::Speed(_)));
-    let speeds: Vec<String> = speeds.map(|column| format!("{:?}", column.name)).collect();
-    let full = by_hand.full_rpm.filter(|_| !speeds.is_empty())?;
-    Some(format!(
-        "throttle is {} over {full} rpm (--rpm-at-full)",
-        speeds.join(" and ")
-    ))
 }
 
 /// Letters that make a cell a word, not a value with a letter astray.
@@ -407,11 +392,8 @@ impl Cells {
             Quantity::Throttle => self.throttle(&Some(column.clone()), record),
             _ => self.value(&Some(column.clone()), record),
         };
-        let both = rows.map(|(_, record)| {
-            columns
-                .each_ref()
-                .map(|column| value(column, record).unwrap_or(f64::INFINITY))
-        });
+        let of = |column: &Column, record| value(column, record).unwrap_or(f64::INFINITY);
+        let both = rows.map(|(_, record)| columns.each_ref().map(|column| of(column, record)));
         let both: Vec<[f64; 2]> = both.filter(|[a, b]| !a.is_nan() && !b.is_nan()).collect();
         let most = greatest(&both.iter().map(|both| both[0]).collect::<Vec<_>>());
         // Of infinite ones the difference is no number.

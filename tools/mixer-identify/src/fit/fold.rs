@@ -2,8 +2,7 @@
 //!
 //! The mixer inverts (u, l) -> (f, Q). Where det J = f_u Q_l - f_l Q_u <= 0 two commands give one
 //! effort: the map folds. Whether it does over a box, and from which idle on it does not, is the
-//! compiler's proof of [`injectivity`], so that `check` accepts what is identified here. The
-//! regions of the report are drawn on a grid.
+//! compiler's proof of [`injectivity`], so that `check` accepts what is identified here.
 
 use mixer_compiler::airframe::Basis;
 use mixer_compiler::model::PairMap;
@@ -26,25 +25,9 @@ pub struct Fold {
     pub least_det: f64,
     /// Where, (u, l).
     pub least_det_at: [f64; 2],
-    /// The connected parts of the box where det J <= 0, worst first; none narrower than half a
-    /// percent of the box.
-    pub regions: Vec<Region>,
     /// The least idle of both rotors, at or above the box's, from which on the map is proven
     /// injective; none if there is none below 0.9 of the box.
     pub least_idle: Option<f64>,
-}
-
-/// A part of the box where the map folds.
-#[derive(Debug, Clone, Copy, Serialize)]
-pub struct Region {
-    /// Least and greatest u in it.
-    pub u: [f64; 2],
-    /// Least and greatest l in it.
-    pub l: [f64; 2],
-    /// Least det J in it.
-    pub least_det: f64,
-    /// Where, (u, l).
-    pub least_det_at: [f64; 2],
 }
 
 /// The least idle of both rotors from the box's on, rounded up to 1e-5, from which on the map is
@@ -90,51 +73,8 @@ pub(crate) fn within(map: &EnclosedPairMap, throttle_box: ThrottleBox) -> Option
 /// without bound, and no tolerance is met.
 pub(crate) const CLEAR: f64 = 1.03;
 
-/// Steps of the grid on which regions are sought.
+/// Steps of the grid on which the least det J is sought.
 const STEPS: usize = 200;
-
-/// Connected regions of values <= 0 on a square grid (u by rows), by flood fill.
-fn regions(grid: &[f64], mut values: Vec<f64>) -> Vec<Region> {
-    let n = grid.len();
-    let mut found = Vec::new();
-    for seed in 0..values.len() {
-        if values[seed] > 0.0 {
-            continue;
-        }
-        let [u, l] = [grid[seed / n], grid[seed % n]];
-        let mut region = Region {
-            u: [u, u],
-            l: [l, l],
-            least_det: values[seed],
-            least_det_at: [u, l],
-        };
-        let mut open = vec![seed];
-        while let Some(k) = open.pop() {
-            let value = std::mem::replace(&mut values[k], f64::INFINITY);
-            if value > 0.0 {
-                continue;
-            }
-            let (i, j) = (k / n, k % n);
-            let [u, l] = [grid[i], grid[j]];
-            region.u = [region.u[0].min(u), region.u[1].max(u)];
-            region.l = [region.l[0].min(l), region.l[1].max(l)];
-            if value < region.least_det {
-                (region.least_det, region.least_det_at) = (value, [u, l]);
-            }
-            let beside = [
-                (i > 0, k.wrapping_sub(n)),
-                (i + 1 < n, k + n),
-                (j > 0, k.wrapping_sub(1)),
-                (j + 1 < n, k + 1),
-            ];
-            let inside = beside.into_iter().filter(|(inside, _)| *inside);
-            open.extend(inside.map(|(_, next)| next));
-        }
-        found.push(region);
-    }
-    found.sort_by(|a, b| a.least_det.total_cmp(&b.least_det));
-    found
-}
 
 /// The report for a map on a box.
 pub fn examine(basis: Basis, thrust: &[f64], torque: &[f64], commanded: ThrottleBox) -> Fold {
@@ -156,7 +96,6 @@ pub fn examine(basis: Basis, thrust: &[f64], torque: &[f64], commanded: Throttle
         injective: proof.is_ok(),
         least_det: values[least],
         least_det_at: place(least),
-        regions: regions(&grid, values),
         least_idle: least_idle(&map, commanded),
     }
 }

@@ -310,40 +310,35 @@ fn idle(
     let ThrottleBox { min: from, max } = fold.commanded;
     let raised = |least: f64| Some((least, fold::round_idle(&map, CLEAR * least, max)?));
     let ([u, l], least_det) = (fold.least_det_at, fold.least_det);
-    if fold.injective {
-        let least = map.least_idle(max).filter(|least| from < CLEAR * least);
-        let Some((least, min)) = least.and_then(raised) else {
-            return Ok(from);
-        };
-        warnings.push(format!(
-            "throttle.min is raised from {from} to {min}: the map folds right below, at {least:.4}"
-        ));
-        return Ok(min);
-    }
-    let Some((least, min)) = fold.least_idle.and_then(raised) else {
-        return Err(Refusal::of(
+    let (least, why) = match fold.injective {
+        true => (
+            map.least_idle(max).filter(|least| from < CLEAR * least),
+            "the map folds right below".to_owned(),
+        ),
+        false if fold.folds => (
+            fold.least_idle,
+            format!("det J falls to {least_det:.3} at (u, l) = ({u:.3}, {l:.3})"),
+        ),
+        false => (
+            fold.least_idle,
+            "the map could not be proven injective".to_owned(),
+        ),
+    };
+    match least.and_then(raised) {
+        Some((least, min)) => {
+            warnings.push(format!(
+                "throttle.min is raised from {from} to {min}: {why}, the least idle without fold is {least:.4}"
+            ));
+            Ok(min)
+        }
+        None if fold.injective => Ok(from),
+        None => Err(Refusal::of(
             files,
-            match fold.folds {
-                true => {
-                    format!("the map folds whatever the idle: det J = {least_det:.3} at ({u:.2}, {l:.2})")
-                }
-                false => "the map could not be proven injective, whatever the idle".into(),
-            },
+            format!("the map folds whatever the idle: {why}"),
             match fold::within(&map, fold.commanded) {
                 Some(ThrottleBox { min, max }) => format!("--throttle {min},{max}, over which it can be inverted"),
                 None => "rows that are sound: --robust leaves out those that stand out; else the map measured again".to_owned(),
             },
-        ));
-    };
-    let (why, without) = match fold.folds {
-        true => (
-            format!("det J falls to {least_det:.3} at (u, l) = ({u:.3}, {l:.3})"),
-            "fold",
-        ),
-        false => ("the map could not be proven injective below".into(), "this doubt"),
-    };
-    warnings.push(format!(
-        "throttle.min is raised from {from} to {min}: {why}, the least idle without {without} is {least:.4}"
-    ));
-    Ok(min)
+        )),
+    }
 }

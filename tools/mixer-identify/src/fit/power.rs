@@ -272,29 +272,24 @@ impl<'a> Hover<'a> {
 
     /// The c of the greatest saving, N m per N.
     fn best_bias(&self) -> f64 {
-        let saving = |c: f64| self.saving(c);
-        let step = self.most / 50.0;
-        let tried = (-50..=50).map(|k| f64::from(k) * step);
-        let best = tried
-            .max_by(|a, b| saving(*a).total_cmp(&saving(*b)))
-            .unwrap_or(0.0);
-        // Next to the end of what is attainable the hill is cut off, and the search may end beyond.
-        let finer = golden(best - step, best + step, saving);
-        if saving(finer) > saving(best) { finer } else { best }
+        let best = |about: f64, most: f64| {
+            let tried = (-50..=50).map(|k| about + 0.02 * f64::from(k) * most);
+            tried
+                .max_by(|a, b| self.saving(*a).total_cmp(&self.saving(*b)))
+                .unwrap_or(about)
+        };
+        best(best(0.0, self.most), 0.02 * self.most)
     }
 }
 
 /// Refuses power that no propeller takes.
 fn plausible(points: &[Point]) -> Result<(), String> {
     let median = median(points.iter().map(|p| p.power_w / p.thrust)).unwrap_or(f64::NAN);
-    if median < 0.0 {
-        return Err("power is negative: check the sign of voltage and current".into());
-    }
     let [least, most] = PLAUSIBLE_W_PER_N;
     if !(least..=most).contains(&median) {
         return Err(format!(
             "the rows take {median:.3} W per N of thrust in the median, propellers take {least} to {most}: check the units \
-             of voltage and current (mA for A?)"
+             and signs of voltage and current (mA for A?)"
         ));
     }
     // Power rises with throttle, and steeply.
@@ -305,14 +300,4 @@ fn plausible(points: &[Point]) -> Result<(), String> {
         return Err("power falls with throttle: check the sign and the columns of the current".into());
     }
     Ok(())
-}
-
-/// The place of the greatest value of a function with one hill between `a` and `b`.
-fn golden(mut a: f64, mut b: f64, of: impl Fn(f64) -> f64) -> f64 {
-    const RATIO: f64 = 0.618_033_988_749_894_9;
-    for _ in 0..40 {
-        let (c, d) = (b - RATIO * (b - a), a + RATIO * (b - a));
-        if of(c) < of(d) { a = c } else { b = d }
-    }
-    0.5 * (a + b)
 }

@@ -37,7 +37,7 @@ const LEAST_SPREAD: f64 = 0.3;
 /// Relative root-mean-square residual above which the rows do not follow one power of voltage.
 const ONE_POWER: f64 = 0.10;
 /// Exponents between a rotor at constant torque and the square law with an ample margin.
-pub const PLAUSIBLE: [f64; 2] = [1.2, 2.4];
+const PLAUSIBLE: [f64; 2] = [1.2, 2.4];
 /// Half-width of the interval above which the exponent says too little.
 const WIDEST: f64 = 0.35;
 /// Throttles closer than this are one level.
@@ -167,7 +167,6 @@ fn exponent(rows: Vec<Row>, kind: BenchKind, reference: f64) -> Exponent {
         profile(&varied_rows, &Regressors::Levels, reference).map(|mut e| {
             e.method = "equal throttles";
             e.levels = varied_levels;
-            add_levels(&mut e, &varied_rows, count);
             e
         })
     } else {
@@ -262,41 +261,6 @@ fn joint(rows: &[Row], kind: BenchKind, reference: f64) -> Result<Option<Estimat
         method: "joint map",
         ..e
     }))
-}
-
-/// Exponents of single levels: between their rows of least and greatest voltage.
-fn add_levels(estimate: &mut Estimate, rows: &[&Row], count: usize) {
-    let full = rows.iter().fold(0.0_f64, |m, r| m.max(r.y.abs()));
-    let mut single: Vec<(f64, f64)> = Vec::new(); // (throttle, exponent)
-    for level in 0..count {
-        let of_level = || rows.iter().filter(|r| r.level == level);
-        let by_voltage = |a: &&&Row, b: &&&Row| a.voltage.total_cmp(&b.voltage);
-        let (Some(low), Some(high)) = (of_level().min_by(by_voltage), of_level().max_by(by_voltage)) else {
-            continue;
-        };
-        // Near zero, and for a torque that changes its sign, a level has no exponent of its own.
-        if low.y.abs().min(high.y.abs()) > 0.01 * full && low.y * high.y > 0.0 {
-            let k = libm::log(high.y / low.y) / libm::log(high.voltage / low.voltage);
-            single.push((0.5 * (low.throttle[0] + low.throttle[1]), k));
-        }
-    }
-    if single.len() < LEAST_LEVELS {
-        return;
-    }
-    single.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let (low, high) = single.split_at(single.len() / 2);
-    estimate.low_and_high_throttle = Some([low, high].map(|part| quantile(part.iter().map(|s| s.1), 0.5)));
-    estimate.quartiles = Some([0.25, 0.5, 0.75].map(|p| quantile(single.iter().map(|s| s.1), p)));
-}
-
-/// Linear interpolation between order statistics.
-fn quantile(values: impl Iterator<Item = f64>, p: f64) -> f64 {
-    let mut sorted: Vec<f64> = values.collect();
-    sorted.sort_by(f64::total_cmp);
-    let at = p * (sorted.len() - 1) as f64;
-    let below = at.floor() as usize;
-    let above = (below + 1).min(sorted.len() - 1);
-    sorted[below] + (at - below as f64) * (sorted[above] - sorted[below])
 }
 
 #[cfg(test)]

@@ -319,15 +319,12 @@ fn other_voltage(run: &Single, map: &Bench) -> Option<String> {
                 exponents_in_words(run.exponents)
             )
         }),
-        (Some(of_run), None) => Some(format!(
-            "{} has no voltage and is taken for one of {of_run:.2} V, that of {}: 5 % of it are 9 % of thrust",
-            map.file, run.file
-        )),
-        (None, Some(of_rows)) => Some(format!(
-            "{} is of {of_rows:.2} V, {} has no voltage and is taken for one of the same (--run-voltage VOLT)",
-            map.file, run.file
-        )),
         (None, None) => None,
+        _ => Some(format!(
+            "one of {} and {} has no voltage (--run-voltage VOLT is that of the run): both are taken for runs at one, of which 5 % are 9 % \
+             of thrust",
+            run.file, map.file
+        )),
     }
 }
 

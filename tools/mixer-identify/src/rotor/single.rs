@@ -202,8 +202,8 @@ fn channel(
     let percent = 100.0 * share;
     if share > MISFIT[0] {
         let told = format!(
-            "the {name} misses a growing curve over the throttle by {percent:.1} % rms of its greatest value, good runs by 1 %; {}",
-            two_curves(&places, greatest)
+            "the {name} misses a growing curve over the throttle by {percent:.1} % rms of its greatest value, good runs by 1 %: a \
+             kink, a wrong row, two propellers or voltages in one table, or a supply that sags"
         );
         let needed = "one run of one rotor and propeller, at a supply that holds or with a voltage in each row, with the throttle \
                       that was commanded";
@@ -216,22 +216,6 @@ fn channel(
         curve,
         misfit_percent: Some(percent),
     })
-}
-
-/// Why points `[throttle, y]` may lie on no curve.
-fn two_curves(places: &[[f64; 2]], greatest: f64) -> String {
-    let mut sorted = places.to_vec();
-    sorted.sort_by(|a, b| a[0].total_cmp(&b[0]));
-    let apart = |pair: &&[[f64; 2]]| {
-        pair[1][0] - pair[0][0] < SAME && (pair[1][1] - pair[0][1]).abs() > MISFIT[1] * greatest
-    };
-    match sorted.windows(2).rfind(apart) {
-        Some(pair) => format!(
-            "at a throttle of {:.2} it is {:.3} and {:.3}: two propellers, motors or voltages in one table",
-            pair[0][0], pair[0][1], pair[1][1]
-        ),
-        None => "a kink, a wrong row, or a supply that sags".into(),
-    }
 }
 
 /// What stands for a torque that was not measured: torque per thrust, m, and why.

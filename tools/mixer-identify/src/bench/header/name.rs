@@ -49,9 +49,7 @@ const FIRST: [&str; 2] = ["left a", "right b"];
 
 /// Which of the two a word is of.
 fn side_of(words: [&str; 2], word: &str) -> Option<usize> {
-    words
-        .iter()
-        .position(|words| of_any(words, word))
+    words.iter().position(|words| of_any(words, word))
 }
 
 impl Name {

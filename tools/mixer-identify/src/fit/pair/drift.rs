@@ -88,39 +88,19 @@ impl Drift {
 
     fn in_words(&self, file: &str, of: &str, unit: &str) -> String {
         let (change, t, share) = (self.change, self.t, 100.0 * self.share);
-        let half = match self.kind {
-            DriftKind::Offset => 0.5 * change.abs(),
-            DriftKind::Scale => 50.0 * change.abs(),
-        };
-        let (how, hover) = match (self.kind, unit) {
-            (DriftKind::Offset, "N") => (
-                format!("by {change:+.3} N"),
-                format!("a hover at half of full thrust is off by up to {share:.1} %"),
+        let (how, mend) = match self.kind {
+            DriftKind::Offset => (
+                format!("by {change:+.4} {unit}"),
+                "rows at rest before, in between and after with --tare, or measuring again in the order of cargo mixer plan",
             ),
-            (DriftKind::Offset, _) => (
-                format!("by {change:+.4} N m"),
-                format!("yaw in hover is off by up to {half:.4} N m a unit"),
-            ),
-            (DriftKind::Scale, "N") => (
+            DriftKind::Scale => (
                 format!("in scale by {:+.1} %", 100.0 * change),
-                format!("a hover is off by up to {half:.1} % of its thrust"),
+                "a supply of one voltage, or its column with --voltage-exponent; else measuring again in the order of cargo mixer plan",
             ),
-            (DriftKind::Scale, _) => (
-                format!("in scale by {:+.1} %", 100.0 * change),
-                format!("yaw in hover is off by up to {half:.1} %"),
-            ),
-        };
-        let mend = match self.kind {
-            DriftKind::Offset => {
-                "rows at rest before, in between and after with --tare, or measuring again in the order of cargo mixer plan"
-            }
-            DriftKind::Scale => {
-                "a supply of one voltage, or its column with --voltage-exponent; else measuring again in the order of cargo mixer plan"
-            }
         };
         format!(
             "{file}: the {of} drifts with the order of the rows {how} from the first to the last (t = {t:.1}), {share:.1} % of the \
-             greatest: {hover}; what helps: {mend}"
+             greatest: {mend}"
         )
     }
 

@@ -73,10 +73,6 @@ pub struct Estimate {
     pub method: &'static str,
     /// Throttle levels measured at different voltages.
     pub levels: usize,
-    /// Lower quartile, median and upper quartile of the exponents of single levels.
-    pub quartiles: Option<[f64; 3]>,
-    /// Medians of the lower and of the upper half of the throttle range.
-    pub low_and_high_throttle: Option<[f64; 2]>,
     /// Relative root-mean-square residual of the rows, percent.
     pub residual_percent: f64,
 }

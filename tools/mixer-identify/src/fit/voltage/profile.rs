@@ -91,8 +91,6 @@ pub(super) fn profile(rows: &[&Row], g: &Regressors, reference: f64) -> Option<E
                 ci95: student_t_975(degrees) * (sse / degrees as f64 / norm).sqrt(),
                 method: "",
                 levels: 0,
-                quartiles: None,
-                low_and_high_throttle: None,
                 residual_percent: 100.0 * (sse / rows.len() as f64).sqrt(),
             });
         }

@@ -71,8 +71,6 @@ fn equal_throttles_give_the_true_exponent_despite_sag() {
         let e = thrust_exponent(&files).estimate().cloned().expect("an exponent");
         assert_eq!((e.method, e.levels), ("equal throttles", 10));
         assert!((e.exponent - k).abs() < e.ci95 && e.ci95 < 0.05, "{k}: {e:?}");
-        let [q1, median, q3] = e.quartiles.expect("quartiles");
-        assert!(q1 <= median && median <= q3 && (median - k).abs() < 0.1);
     }
 }
 
