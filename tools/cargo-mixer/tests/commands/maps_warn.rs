@@ -11,11 +11,15 @@ use mixer_compiler::Source;
 use mixer_compiler::airframe::Basis;
 use mixer_compiler::diagnostic::Code;
 use mixer_compiler::model::wake::mean_torque;
+use mixer_identify::air::Air;
 use mixer_identify::bench::{Bench, Point};
+use mixer_identify::fit::basis::ThrottleBox;
 use mixer_identify::fit::polynomial::Polynomial;
 use mixer_identify::fragment;
 use mixer_identify::identified::{Identified, Settings, from_benches};
 use mixer_identify::numbers::{Number, Run};
+use mixer_identify::rotor::predict::{PredictOptions, correct};
+use mixer_identify::rotor::single::{RunFacts, Single};
 
 use crate::{maps, measured};
 
@@ -443,6 +447,60 @@ fn alarms_of_honest_files_are_counted() {
         assert!(100 * outside <= *files, "{number}: {outside} of {files}");
     }
     told_of_all.is_true("honest files");
+}
+
+/// Runs that are cut and predicted to their ends: the deviation that is stated holds within two.
+#[test]
+#[ignore = "needs MIXER_BENCH_DATA"]
+fn runs_that_are_cut_lie_within_two_deviations() {
+    let mut files = honest("strawson", &[".csv"]);
+    files.extend(honest("newdexterity", &["single_rotor", "bottom_rotor"]));
+    let (mut cuts, mut worst) = (0, 0.0_f64);
+    for path in &files {
+        let run = |words: &[&str]| {
+            let file = [&["predict", &path.to_string_lossy(), "--kappa", "0.012"], words].concat();
+            Arguments::try_parse_from(file)
+                .unwrap_or_else(|error| panic!("{error}"))
+                .predict
+        };
+        let whole = read_one(path, &run(&[]).settings()).unwrap_or_else(|refusal| panic!("{refusal}"));
+        let last = whole
+            .points
+            .iter()
+            .max_by(|a, b| a.u.total_cmp(&b.u))
+            .expect("points");
+        for cut in [0.72, 0.8, 0.85, 0.9] {
+            let mut part = whole.clone();
+            part.points.retain(|p| p.u <= cut);
+            let known = RunFacts {
+                kappa_m: Some(0.012),
+                ..RunFacts::default()
+            };
+            let Ok(single) = Single::of(&part, &known, &mut Vec::new()) else {
+                continue;
+            };
+            let wishes = PredictOptions {
+                throttle: Some(ThrottleBox {
+                    min: 0.2,
+                    max: last.u,
+                }),
+                ..PredictOptions::default()
+            };
+            let (measured, rotor) = (single.voltage_v.expect("a voltage"), single.rotor);
+            let truth = last.at_voltage(last.voltage, measured, [1.75; 2]).thrust;
+            let Ok(found) = correct(single, None, &[], Air::default(), &wishes, Vec::new()) else {
+                continue;
+            };
+            let off = 100.0 * (rotor.thrust.at(last.u) / truth - 1.0).abs();
+            worst = worst.max(off / found.pair.uncertainty.thrust_percent);
+            cuts += 1;
+        }
+    }
+    println!(
+        "{cuts} cuts of {} runs, {worst:.2} deviations off at most",
+        files.len()
+    );
+    assert!(cuts >= 20 && worst < 2.0, "{worst} deviations in {cuts} cuts");
 }
 
 /// A mistake in a bench: its name, the words of its cause, what it does.

@@ -274,3 +274,109 @@ fn mistakes_are_told() {
     }
     measured::hold("mistakes.csv", &csv);
 }
+
+/// Words with one blank between them, as reports break lines anywhere.
+fn in_one_line(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+/// The parts of messages in the sources of a folder that offer an option: what stands between two values.
+fn offers(folder: &Path, found: &mut Vec<String>) {
+    for entry in fs::read_dir(folder).unwrap().flatten() {
+        let path = entry.path();
+        if path.is_dir() {
+            offers(&path, found);
+            continue;
+        }
+        if path.ends_with("tests.rs") {
+            continue;
+        }
+        let text = fs::read_to_string(&path).unwrap();
+        let code = text.split("#[cfg(test)]").next().unwrap_or_default();
+        let is_code = |line: &&str| !line.trim_start().starts_with("//");
+        let code = code.lines().filter(is_code).collect::<Vec<_>>().join("\n");
+        // Quotes within a text are told from its ends by their mark.
+        let code = code.replace("\\\"", "\u{1}").replace("'\"'", "");
+        let texts = code.split('"').skip(1).step_by(2);
+        // Comments of the tables that are written are no messages.
+        for text in texts.filter(|text| !text.trim_start_matches("\\n").starts_with('#')) {
+            let text = text
+                .replace("\\\n", " ")
+                .replace("PRIOR", "{")
+                .replace("IDLE", "{");
+            let parts = text
+                .split('{')
+                .map(|part| part.split_once('}').map_or(part, |(_, rest)| rest));
+            let parts = parts.map(|part| in_one_line(&part.replace('\u{1}', "\"")));
+            let is_offer = |part: &String| {
+                let words: Vec<&str> = part.split(' ').collect();
+                words.len() > 1
+                    && words
+                        .iter()
+                        .any(|word| word.trim_start_matches('(').starts_with("--"))
+            };
+            found.extend(parts.filter(is_offer));
+        }
+    }
+}
+
+/// Every mend that a message offers is run on the file that got it, `tests/mistakes/mends.txt`, and leads on: the command
+/// succeeds and does not say the same again.
+///
+/// ```text
+/// * grams under a header of newtons    what is wrong
+/// $ c '..'; i bad.csv                  the command that is told
+/// > --unit thrust=UNIT                 the words of the mend
+/// $ i bad.csv --unit thrust=gf         the command with it
+/// ```
+#[test]
+fn mends_lead_on() {
+    let text = fs::read_to_string(root().join("tools/cargo-mixer/tests/mistakes/mends.txt")).unwrap();
+    let place = folder("mends");
+    inputs(&place);
+    let (mut shared, mut said, mut complaints, mut cases) = (String::new(), String::new(), String::new(), 0);
+    let mut lines = text.lines().peekable();
+    let mut taken = |mark: &str, lines: &mut std::iter::Peekable<std::str::Lines>| {
+        let first = lines.next_if(|line| line.starts_with(mark))?;
+        let mut command = first[2..].to_owned();
+        while let Some(more) = lines.next_if(|line| line.starts_with("  ")) {
+            command += &format!("\n{}", &more[2..]);
+        }
+        Some(command)
+    };
+    while lines.peek().is_some() {
+        if let Some(more) = taken("@ ", &mut lines) {
+            shared = more;
+        } else if let Some(title) = taken("* ", &mut lines) {
+            let [told, words, mended] = ["$ ", "> ", "$ "].map(|mark| taken(mark, &mut lines).expect(&title));
+            let run = |command: &str| {
+                let answer = answer(&format!("{shared}\n{command}"), &place);
+                (
+                    answer.good,
+                    in_one_line(&answer.lines.join("\n").replace("\n  * ", "\n")),
+                )
+            };
+            let ((_, before), (leads, after)) = (run(&told), run(&mended));
+            if !before.contains(&words) {
+                let _ = writeln!(complaints, "{title}: no {words:?} in\n  {before}");
+            } else if !leads || after.contains(&words) {
+                let _ = writeln!(complaints, "{title}: does not lead on:\n  {after}");
+            }
+            said += &format!("{before}\n");
+            cases += 1;
+        } else {
+            lines.next();
+        }
+    }
+    let mut offered = Vec::new();
+    offers(&root().join("tools/mixer-identify/src"), &mut offered);
+    assert!(
+        cases > 50 && offered.len() > 50,
+        "{cases} cases, {} offers",
+        offered.len()
+    );
+    for offer in offered.iter().filter(|offer| !said.contains(*offer)) {
+        let _ = writeln!(complaints, "in no case: {offer}");
+    }
+    assert!(complaints.is_empty(), "\n{complaints}");
+}

@@ -339,10 +339,6 @@ fn speeds_stand_for_throttles() {
                 Read(2, [1.0, 0.0, 8.0, 0.0]),
             ),
             (
-                "RPM,Thrust (N)\n2500,2\n5000,8\n",
-                Noted("throttle is \"RPM\" over 5000 rpm"),
-            ),
-            (
                 "RPM,Thrust (N)\n2500,2\n5000,8\n6000,11\n",
                 Noted("1 of 3 rows is left out, the first in line 4: \"RPM\" = 6000 is above --rpm-at-full"),
             ),

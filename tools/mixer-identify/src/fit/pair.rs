@@ -336,8 +336,13 @@ fn idle(
             files,
             format!("the map folds whatever the idle: {why}"),
             match fold::within(&map, fold.commanded) {
-                Some(ThrottleBox { min, max }) => format!("--throttle {min},{max}, over which it can be inverted"),
-                None => "rows that are sound: --robust leaves out those that stand out; else the map measured again".to_owned(),
+                Some(ThrottleBox { min, max }) => {
+                    format!("--throttle {min},{max}, over which it can be inverted")
+                }
+                None => {
+                    "a map of which the torque falls with the upper throttle and rises with the lower one"
+                        .to_owned()
+                }
             },
         )),
     }

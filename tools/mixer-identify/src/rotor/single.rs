@@ -195,7 +195,7 @@ fn channel(
         return Err(Refusal::of(
             file,
             format!("the {name} does not grow with the throttle"),
-            format!("a run of one rotor; the sign of a column by --{name}-sign"),
+            "a run of one rotor, whose thrust (its sign by --thrust-sign) and torque grow with the throttle",
         ));
     };
     let share = rms(places.iter().map(|[x, y]| y - curve.at(*x))) / greatest;
@@ -221,7 +221,7 @@ fn channel(
 /// What stands for a torque that was not measured: torque per thrust, m, and why.
 fn stand_in(file: &str, known: &RunFacts) -> Result<(f64, String), Refusal> {
     match (known.kappa_m, known.diameter_m) {
-        (Some(kappa), _) => Ok((kappa, "as --kappa says".into())),
+        (Some(kappa), _) => Ok((kappa, "as given".into())),
         (None, Some(diameter)) => Ok((
             KAPPA_PER_DIAMETER * diameter,
             format!(

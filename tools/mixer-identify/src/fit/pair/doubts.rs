@@ -108,7 +108,7 @@ pub(super) fn lower_is_stronger(
         )),
         Wake::Unknown if sign_is_found && !by_hand => warnings.push(format!(
             "the torque does not tell which rotor is the upper one (mean {percent:+.1} % of the largest): make sure that the columns \
-             are the right way round (--swap exchanges them)"
+             are the right way round, and say so by --column upper=HEADER --column lower=HEADER"
         )),
         Wake::Above | Wake::Below | Wake::Unknown => {}
     }

@@ -91,7 +91,7 @@ impl Drift {
         let (how, mend) = match self.kind {
             DriftKind::Offset => (
                 format!("by {change:+.4} {unit}"),
-                "rows at rest before, in between and after with --tare, or measuring again in the order of cargo mixer plan",
+                "load cells that hold their zero, and measuring again in the order of cargo mixer plan",
             ),
             DriftKind::Scale => (
                 format!("in scale by {:+.1} %", 100.0 * change),
