@@ -457,13 +457,10 @@ fn runs_that_are_cut_lie_within_two_deviations() {
     files.extend(honest("newdexterity", &["single_rotor", "bottom_rotor"]));
     let (mut cuts, mut worst) = (0, 0.0_f64);
     for path in &files {
-        let run = |words: &[&str]| {
-            let file = [&["predict", &path.to_string_lossy(), "--kappa", "0.012"], words].concat();
-            Arguments::try_parse_from(file)
-                .unwrap_or_else(|error| panic!("{error}"))
-                .predict
-        };
-        let whole = read_one(path, &run(&[]).settings()).unwrap_or_else(|refusal| panic!("{refusal}"));
+        let words = ["predict".as_ref(), path.as_os_str()];
+        let arguments = Arguments::try_parse_from(words).unwrap_or_else(|error| panic!("{error}"));
+        let whole =
+            read_one(path, &arguments.predict.settings()).unwrap_or_else(|refusal| panic!("{refusal}"));
         let last = whole
             .points
             .iter()

@@ -336,7 +336,7 @@ fn mends_lead_on() {
     inputs(&place);
     let (mut shared, mut said, mut complaints, mut cases) = (String::new(), String::new(), String::new(), 0);
     let mut lines = text.lines().peekable();
-    let mut taken = |mark: &str, lines: &mut std::iter::Peekable<std::str::Lines>| {
+    let taken = |mark: &str, lines: &mut std::iter::Peekable<std::str::Lines>| {
         let first = lines.next_if(|line| line.starts_with(mark))?;
         let mut command = first[2..].to_owned();
         while let Some(more) = lines.next_if(|line| line.starts_with("  ")) {
