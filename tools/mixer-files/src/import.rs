@@ -101,10 +101,9 @@ pub fn import(file: &Source, pair: Option<&Source>, options: &Options<'_>) -> Re
     let frame = checklist::in_words(&frame.collect::<Vec<_>>()).join("; ");
     imported.notes.push(format!("the frame is {frame}"));
     imported.notes.extend(pairs::alone(&units));
-    let by_height = imported.has_places && options.upper.is_empty();
-    imported
-        .notes
-        .extend(pairs::upside_down(&units).filter(|_| by_height));
+    if imported.has_places && options.upper.is_empty() {
+        imported.notes.extend(pairs::upside_down(&units));
+    }
     let places: Vec<[f64; 3]> = units.iter().map(|unit| unit.position_m).collect();
     imported
         .notes
@@ -167,7 +166,7 @@ fn of_parameters(file: &Source, arm_m: Option<f64>) -> Result<Imported, String> 
         ));
     };
     imported.notes.extend(outputs::order(&parameters));
-    imported.notes.extend(parameters.includes());
+    imported.notes.extend(parameters.included.clone());
     let pulses = outputs::own_pulses(&parameters);
     for rotor in &mut imported.rotors {
         let own = pulses.iter().find(|(motor, _)| *motor == rotor.channel);

@@ -419,13 +419,12 @@ pub fn prepare(log: Log, how: &Preparation) -> Result<Bench, Refusal> {
         ));
     }
     let alone = turned.kind == BenchKind::SingleRotor && turned.two_throttles;
+    let holds_speed = columns
+        .all()
+        .any(|column| matches!(column.scale, Scale::Speed(_)));
     Ok(Bench {
         no_power: columns.no_power(),
-        holds_speed: columns[Quantity::Throttle]
-            .rotors
-            .iter()
-            .flatten()
-            .any(|column| matches!(column.scale, Scale::Speed(_))),
+        holds_speed,
         turning: alone.then_some([Turning::Upper, Turning::Lower][turned.rotors[0]]),
         file: name,
         format: columns.format,

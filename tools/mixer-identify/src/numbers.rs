@@ -140,8 +140,8 @@ const SIZES: [Number; 9] = [
             let rotors = [0, 1].into_iter().filter_map(|rotor| run.without_diameter(rotor));
             exact(rotors.max_by_key(|x| (1e3 * libm::log(x / 4.7e3).abs()) as i64)?)
         }, [
-            "thrust or torque is in another unit (twice the thrust is 32 times this, twice the torque a 16th), or the speed not the rotor's",
-            "the units of both: --unit thrust=UNIT, --unit torque=UNIT; speed in revolutions per minute of the rotor, not of the motor's field"]),
+            "thrust or torque is in another unit (twice the thrust is 32 times as much, twice the torque a 16th), or the speed not the rotor's",
+            "the units of both: --unit thrust=UNIT, --unit torque=UNIT; the rotor's revolutions per minute"]),
     // By momentum theory. A rotor in a wake has less.
     number("figure of merit (ideal over shaft power)", [0.48, 0.76], NEVER,
         |run| run.single(|p, d| ideal_w(p, d) / p.shaft_w), ONE_ROTOR),
@@ -169,8 +169,8 @@ const ROWS: [Number; 2] = [
 #[rustfmt::skip]
 const SHAPE: [Number; 5] = [
     number(GROWS, [GROWTH[0], f64::INFINITY], NEVER, |run| run.growth(), [
-            "something linearised the throttle before the controller (MOT_THST_EXPO, THR_MDL_FAC; it is about 1 then), or the supply \
-             reached its limit, which a column of the voltage shows",
+            "something linearised the throttle (MOT_THST_EXPO, THR_MDL_FAC: about 1), or the supply reached its limit, which a column of the \
+             voltage shows",
             "the outputs that the speed controllers got as throttles, or that correction switched off; the voltage of each row"]),
     number(GROWS, [f64::NEG_INFINITY, GROWTH[1]], NEVER, |run| run.growth(), [
             "the throttle is of another range of pulses",

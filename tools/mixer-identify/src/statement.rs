@@ -299,8 +299,6 @@ fn of_voltage(statements: &mut Statements, voltage: &Voltage) {
             statements.more(format!("needed: {more}"));
         }
     }
-    let ([low, high], mean) = (voltage.range_v, voltage.mean_v);
-    statements.more(format!("rows of {low:.2} to {high:.2} V, mean {mean:.2} V"));
 }
 
 fn of_estimate(e: &Estimate) -> String {

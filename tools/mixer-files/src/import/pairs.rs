@@ -104,13 +104,11 @@ pub(super) fn upside_down(units: &[Unit]) -> Option<String> {
         .iter()
         .filter_map(|unit| Some((unit.channels.0, unit.channels.1?)));
     let pairs: Vec<(usize, usize)> = pairs.collect();
+    let all = pairs.len() > 1 && pairs.iter().all(|(upper, lower)| upper > lower);
     let lower: Vec<String> = pairs.iter().map(|(_, lower)| lower.to_string()).collect();
-    (pairs.len() > 1 && pairs.iter().all(|(upper, lower)| upper > lower)).then(|| {
-        format!(
-            "by their PZ, which counts downwards, rotors {0} are the lower ones: if it was counted upwards, they are the upper ones: \
-             --upper {0}",
-            lower.join(",")
-        )
+    let lower = lower.join(",");
+    all.then(|| {
+        format!("by their PZ rotors {lower} are the lower ones: if it was counted upwards, they are the upper ones: --upper {lower}")
     })
 }
 

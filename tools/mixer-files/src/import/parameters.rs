@@ -15,8 +15,8 @@ pub(crate) struct Parameters {
     file: String,
     /// Each with its line.
     values: BTreeMap<String, (f64, u32)>,
-    /// Lines that include another file.
-    included: Vec<String>,
+    /// The note on a file that is included.
+    pub(crate) included: Option<String>,
 }
 
 /// Longest piece of a bad line in a message, characters.
@@ -37,7 +37,7 @@ impl Parameters {
         let mut parameters = Parameters {
             file: file.clone(),
             values: BTreeMap::new(),
-            included: Vec::new(),
+            included: None,
         };
         for (statement, number) in statements {
             let words = words(statement);
@@ -49,9 +49,9 @@ impl Parameters {
             let (name, value) = match *words {
                 [] => continue,
                 ["@include", name] => {
-                    parameters
-                        .included
-                        .push(format!("{file}:{number}: @include {name}"));
+                    let told =
+                        format!("{file}:{number}: @include {name} is passed over: what it sets is not read");
+                    parameters.included = Some(told);
                     continue;
                 }
                 [vehicle, _, name, value, _] if vehicle.parse::<u32>().is_ok() => (name, value.parse()),
@@ -100,14 +100,6 @@ impl Parameters {
             Some((_, line)) => format!("{}:{line}", self.file),
             None => self.file.clone(),
         }
-    }
-
-    /// The note on files that are included.
-    pub(crate) fn includes(&self) -> Option<String> {
-        let what = (!self.included.is_empty()).then(|| self.included.join(", "))?;
-        Some(format!(
-            "{what} is passed over: what it sets is not read, unless it is copied into this file"
-        ))
     }
 
     pub(crate) fn count(&self) -> usize {

@@ -321,8 +321,7 @@ fn other_voltage(run: &Single, map: &Bench) -> Option<String> {
         }),
         (None, None) => None,
         _ => Some(format!(
-            "one of {} and {} has no voltage (--run-voltage VOLT is that of the run): both are taken for runs at one, of which 5 % are 9 % \
-             of thrust",
+            "one of {} and {} has no voltage (--run-voltage VOLT is that of the run): both are taken for runs at one",
             run.file, map.file
         )),
     }

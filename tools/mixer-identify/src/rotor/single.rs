@@ -205,8 +205,8 @@ fn channel(
             "the {name} misses a growing curve over the throttle by {percent:.1} % rms of its greatest value, good runs by 1 %: a \
              kink, a wrong row, two propellers or voltages in one table, or a supply that sags"
         );
-        let needed = "one run of one rotor and propeller, at a supply that holds or with a voltage in each row, with the throttle \
-                      that was commanded";
+        let needed =
+            "one run of one rotor and propeller, at a supply that holds or with a voltage in each row";
         if share > MISFIT[1] {
             return Err(Refusal::of(file, told, needed));
         }
