@@ -413,7 +413,7 @@ fn compiled(
             Some(PredictedPair { throttle, .. }) => {
                 format!("--throttle {},{}, over which it can be", throttle.min, throttle.max)
             }
-            None => "a run of a rotor whose thrust and torque grow over the whole throttle, or a bench for the pair".to_owned(),
+            None => "a run of a rotor whose thrust and torque grow over the whole throttle, or a bench".to_owned(),
         };
         Refusal::of(file, reason, needed)
     })
