@@ -12,7 +12,7 @@ use crate::rolled;
 
 /// Halvings of the share of roll and pitch, and of that of yaw, in [`Frame::guard`]: every one is a least norm more in the
 /// stated bound.
-const HALVINGS: [u32; 2] = [4, 2];
+const HALVINGS: [u32; 2] = [3, 1];
 
 /// Times that the guard runs least norm.
 pub const GUARD_LEAST_NORMS: u32 = HALVINGS[0] + HALVINGS[1] + 1;
