@@ -157,6 +157,17 @@ impl Airframe {
         self.units.iter().flat_map(Unit::channels).count()
     }
 
+    /// The layers of its rotors, of `upper`, `lower` and `single` those that there are, each with its outputs.
+    pub fn layers(&self) -> impl Iterator<Item = (&'static str, Vec<usize>)> + '_ {
+        let of = |layer: &'static str| {
+            let rotors = self.units.iter().flat_map(Unit::rotors);
+            let outputs = rotors.filter(|rotor| rotor.layer == layer);
+            (layer, outputs.map(|rotor| rotor.channel).collect::<Vec<_>>())
+        };
+        let layers = ["upper", "lower", "single"].into_iter();
+        layers.map(of).filter(|(_, outputs)| !outputs.is_empty())
+    }
+
     /// Number of units that are pairs.
     pub fn pair_units(&self) -> usize {
         self.rotors() - self.units.len()

@@ -217,9 +217,7 @@ fn module_lines(compiled: &Compiled) -> Vec<String> {
     lines.push(String::new());
     let [f, q] = compiled.stated.map(crate::diagnostic::rounded_up);
     let Some(of_pairs) = compiled.of_all_pairs() else {
-        lines.push(
-            " No unit is a pair. Every mix checks that thrust and torque of each rotor are within".to_owned(),
-        );
+        lines.push(" Every mix checks that thrust and torque of each rotor are within".to_owned());
         lines.push(format!(
             " {f} N and {q} N m of what is asked; else it says what is not delivered."
         ));

@@ -3,9 +3,10 @@
 
 use mixer_rt::tables::{Airmode, Priorities, REQUEST_LIMIT};
 use mixer_rt::{Health, Wrench};
-use serde::Serialize;
+use serde::ser::SerializeMap as _;
+use serde::{Serialize, Serializer};
 
-use crate::airframe::{Axis, Unit};
+use crate::airframe::Axis;
 use crate::compiled::Compiled;
 use crate::diagnostic::{Code, Diagnostic, rounded};
 use crate::model::scales;
@@ -51,22 +52,38 @@ impl Search {
     }
 }
 
+/// The rotors of a layer in hover.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Layer {
+    /// `upper`, `lower` or `single`.
+    pub layer: &'static str,
+    /// Least and greatest throttle.
+    pub throttle: [f64; 2],
+    /// The outputs that have them.
+    pub outputs: [usize; 2],
+}
+
+/// Keys as `upper_throttle` and `upper_outputs`.
+fn by_layer<S: Serializer>(layers: &[Layer], serializer: S) -> Result<S::Ok, S::Error> {
+    let mut map = serializer.serialize_map(None)?;
+    for of in layers {
+        map.serialize_entry(&format!("{}_throttle", of.layer), &of.throttle)?;
+        map.serialize_entry(&format!("{}_outputs", of.layer), &of.outputs)?;
+    }
+    map.end()
+}
+
 /// Hover at one voltage.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct HoverAt {
     /// The voltage, V.
     pub voltage_v: Option<f64>,
-    /// Least and greatest throttle of the upper rotors; `None` where the weight is not carried.
-    pub upper_throttle: Option<[f64; 2]>,
-    /// The outputs that have them.
-    pub upper_outputs: Option<[usize; 2]>,
-    /// Least and greatest throttle of the lower rotors, likewise; `None` where all units are single rotors.
-    pub lower_throttle: Option<[f64; 2]>,
-    /// The outputs that have them.
-    pub lower_outputs: Option<[usize; 2]>,
-    /// Least throttles, of the upper and of the lower rotors, where units give one standard deviation of
-    /// `[pair.uncertainty]` more thrust than their model, and greatest ones where they give as much less; `None`
-    /// without that table, or where the weight is then not carried.
+    /// Upper, lower and single rotors, as far as there are any; empty where the weight is not carried.
+    #[serde(flatten, serialize_with = "by_layer")]
+    pub layers: Vec<Layer>,
+    /// Least throttles, of each layer, where units give one standard deviation of their `uncertainty` more thrust than
+    /// their model, and greatest ones where they give as much less; `None` without that table, or where the weight is
+    /// then not carried.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub throttle_band: Option<[Vec<f64>; 2]>,
     /// Largest torques `[negative, positive]` about the served axes that are delivered with the
@@ -137,13 +154,11 @@ impl RotorOut {
             airmode: Airmode::RollPitch,
             yaw_reserve_nm: 0.0,
         };
-        let rotors = || compiled.airframe.units.iter().flat_map(Unit::rotors);
-        let worst = |layer: &'static str| {
-            let of_layer = rotors().filter(|rotor| rotor.layer == layer);
-            let all = of_layer.map(|rotor| RotorOut {
+        let worst = |(layer, outputs): (&'static str, Vec<usize>)| {
+            let all = outputs.into_iter().map(|output| RotorOut {
                 layer,
-                output: rotor.channel,
-                yaw_nm: level_yaw(&tables, volts, weight_n as f32, rotor.channel as u8),
+                output,
+                yaw_nm: level_yaw(&tables, volts, weight_n as f32, output as u8),
                 not_level: Vec::new(),
             });
             let all: Vec<RotorOut> = all.collect();
@@ -157,10 +172,7 @@ impl RotorOut {
                 .min_by(|a, b| a.weaker_nm().total_cmp(&b.weaker_nm()))?;
             Some(RotorOut { not_level, ..worst })
         };
-        ["upper", "lower", "single"]
-            .into_iter()
-            .filter_map(worst)
-            .collect()
+        compiled.airframe.layers().filter_map(worst).collect()
     }
 }
 
@@ -203,14 +215,12 @@ fn limits(compiled: &Compiled) -> Option<Diagnostic> {
     let reference_v = airframe.voltage.as_ref().map(|voltage| voltage.reference);
     let at = HoverAt::new(compiled, airframe.weight_n()?, reference_v);
     let room = NEXT_TO * (max - min);
-    let ends = at
-        .layers()
-        .into_iter()
-        .flat_map(|([least, greatest], [lowest, highest])| {
-            let idle = (least - min < room).then_some(("idle", min, least, lowest));
-            let full = (max - greatest < room).then_some(("throttle.max", max, greatest, highest));
-            [full, idle]
-        });
+    let ends = at.layers.iter().flat_map(|layer| {
+        let ([least, greatest], [lowest, highest]) = (layer.throttle, layer.outputs);
+        let idle = (least - min < room).then_some(("idle", min, least, lowest));
+        let full = (max - greatest < room).then_some(("throttle.max", max, greatest, highest));
+        [full, idle]
+    });
     let (name, limit, throttle, output) = ends.flatten().next()?;
     Some(airframe.diagnostic(
         Code::HoverAtLimit,
@@ -254,14 +264,6 @@ fn margins(compiled: &Compiled) -> Vec<Diagnostic> {
 }
 
 impl HoverAt {
-    /// Least and greatest throttle of the upper rotors and, where there are any, of the lower ones, each with its outputs; empty
-    /// where the weight is not carried.
-    pub fn layers(&self) -> Vec<([f64; 2], [usize; 2])> {
-        let upper = self.upper_throttle.zip(self.upper_outputs);
-        let lower = self.lower_throttle.zip(self.lower_outputs);
-        upper.into_iter().chain(lower).collect()
-    }
-
     /// What is left beside a thrust of `weight_n` N at a voltage, V; any where the airframe ignores
     /// it.
     pub fn new(compiled: &Compiled, weight_n: f64, voltage_v: Option<f64>) -> Self {
@@ -278,34 +280,31 @@ impl HoverAt {
         let Some(throttles) = mix([0.0, 0.0, 0.0, weight_n]) else {
             return HoverAt {
                 voltage_v,
-                upper_throttle: None,
-                upper_outputs: None,
-                lower_throttle: None,
-                lower_outputs: None,
+                layers: Vec::new(),
                 throttle_band: None,
                 margins: Vec::new(),
                 rotor_out: Vec::new(),
             };
         };
-        // Outputs of the upper and of the lower rotors that have the least and the greatest throttle, single ones
-        // among the upper.
-        let extremes = |throttles: &[f32]| -> Vec<[usize; 2]> {
-            let of_layer = |layer| {
-                let units = || compiled.airframe.units.iter();
-                let outputs = || units().filter_map(|unit| unit.channels().nth(layer));
+        let layers = |throttles: &[f32]| -> Vec<Layer> {
+            let of = |(layer, all): (&'static str, Vec<usize>)| {
+                let all = || all.iter().copied();
                 let by_throttle = |a: &usize, b: &usize| throttles[*a].total_cmp(&throttles[*b]);
-                Some([outputs().min_by(by_throttle)?, outputs().max_by(by_throttle)?])
+                let outputs = [all().min_by(by_throttle)?, all().max_by(by_throttle)?];
+                let throttle = outputs.map(|output| f64::from(throttles[output]));
+                Some(Layer {
+                    layer,
+                    throttle,
+                    outputs,
+                })
             };
-            (0..2).filter_map(of_layer).collect()
+            compiled.airframe.layers().filter_map(of).collect()
         };
-        let outputs = extremes(&throttles);
-        let at = |of: &[usize; 2]| of.map(|output| f64::from(throttles[output]));
         let band = |axis: Axis| band(compiled, axis, voltage_v);
         let throttle_band = band(Axis::Thrust).and_then(|off| {
             let at = |thrust: f64, end: usize| {
                 let throttles = mix([0.0, 0.0, 0.0, thrust])?;
-                let of = |of: &[usize; 2]| f64::from(throttles[of[end]]);
-                Some(extremes(&throttles).iter().map(of).collect())
+                Some(layers(&throttles).iter().map(|of| of.throttle[end]).collect())
             };
             Some([at(weight_n - off, 0)?, at(weight_n + off, 1)?])
         });
@@ -327,10 +326,7 @@ impl HoverAt {
         });
         HoverAt {
             voltage_v,
-            upper_throttle: outputs.first().map(at),
-            upper_outputs: outputs.first().copied(),
-            lower_throttle: outputs.get(1).map(at),
-            lower_outputs: outputs.get(1).copied(),
+            layers: layers(&throttles),
             throttle_band,
             margins: margins.collect(),
             rotor_out: RotorOut::of(compiled, weight_n, voltage_v),

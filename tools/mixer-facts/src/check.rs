@@ -127,17 +127,23 @@ pub fn compare(all: &[Checked]) -> String {
 }
 
 fn units(compiled: &Compiled) -> String {
-    let mut text = "unit   x (m)    y (m)    z (m)    upper spin  upper channel  lower channel\n".to_owned();
+    let is_pairs = compiled.airframe.single_units() == 0;
+    let rotors = match is_pairs {
+        true => "upper spin  upper channel  lower channel",
+        false => "rotors",
+    };
+    let mut text = format!("unit   x (m)    y (m)    z (m)    {rotors}\n");
     for (index, unit) in compiled.airframe.units.iter().enumerate() {
         let [x, y, z] = unit.position_m;
-        let (spin, upper) = (unit.upper_spin.name(), unit.upper_channel);
-        let lower = unit
-            .lower_channel
-            .map_or("none".to_owned(), |channel| channel.to_string());
-        let _ = writeln!(
-            text,
-            "{index:<4}  {x:>7.4}  {y:>7.4}  {z:>7.4}    {spin:<10}  {upper:<13}  {lower}"
-        );
+        let rotors = match unit.lower_channel.filter(|_| is_pairs) {
+            Some(lower) => format!(
+                "{:<10}  {:<13}  {lower}",
+                unit.upper_spin.name(),
+                unit.upper_channel
+            ),
+            None => unit.in_words(),
+        };
+        let _ = writeln!(text, "{index:<4}  {x:>7.4}  {y:>7.4}  {z:>7.4}    {rotors}");
     }
     text
 }

@@ -114,7 +114,11 @@ impl Fact {
 /// A line of `check`.
 impl fmt::Display for Fact {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "{:<18}  {}", self.name, self.text().trim_start())
+        match self.text() {
+            // Its keys of JSON hold without a pair, too.
+            text if text.is_empty() => Ok(()),
+            text => writeln!(f, "{:<18}  {}", self.name, text.trim_start()),
+        }
     }
 }
 
@@ -277,8 +281,7 @@ fn hover(list: &mut List, compiled: &Compiled) {
         .in_verdict();
     for (at, name) in hover.at.iter().rev().zip(["hover", "hover, lowest V"]) {
         let volts = or_nothing(at.voltage_v, |volts| format!(" at {volts:?} V"));
-        let layers = at.layers();
-        if layers.is_empty() {
+        if at.layers.is_empty() {
             let words = format!("the weight is not carried{volts}");
             list.say(name, "", "", words).in_verdict();
             continue;
@@ -292,27 +295,26 @@ fn hover(list: &mut List, compiled: &Compiled) {
         let left = Some(left.join(", ")).filter(|left| !left.is_empty());
         let left = or_nothing(left, |left| format!("; left (N m): {left}"));
         let band = or_nothing(at.throttle_band.as_ref(), |[least, most]| {
-            let ends = least.iter().zip(most).zip([" upper", " lower"]);
-            let ends = ends.map(|((least, most), name)| {
-                format!(
-                    "{least:.3} to {most:.3}{}",
-                    if layers.len() > 1 { name } else { "" }
-                )
+            let ends = least.iter().zip(most).zip(&at.layers);
+            let ends = ends.map(|((least, most), of)| {
+                let name = if at.layers.len() > 1 { of.layer } else { "" };
+                format!("{least:.3} to {most:.3} {name}").trim_end().to_owned()
             });
-            let table = if layers.len() > 1 { "pair" } else { "rotor" };
-            format!(
-                "; by [{table}.uncertainty] {}",
-                ends.collect::<Vec<_>>().join(", ")
-            )
+            let mut tables = vec!["[pair.uncertainty]", "[rotor.uncertainty]"];
+            let airframe = &compiled.airframe;
+            tables.retain(|table| match table.starts_with("[pair") {
+                true => !airframe.pairs.is_empty(),
+                false => !airframe.single_rotors.is_empty(),
+            });
+            let ends: Vec<String> = ends.collect();
+            format!("; by {} {}", tables.join(" and "), ends.join(", "))
         });
-        let throttle = layers
-            .iter()
-            .map(|(throttle, outputs)| layer(*throttle, *outputs));
-        let throttle = throttle.collect::<Vec<_>>().join(", ");
-        let whose = if layers.len() > 1 {
-            " of upper, lower rotors"
-        } else {
-            ""
+        let throttles = at.layers.iter().map(|of| layer(of.throttle, of.outputs));
+        let throttle = throttles.collect::<Vec<_>>().join(", ");
+        let names: Vec<&str> = at.layers.iter().map(|of| of.layer).collect();
+        let whose = match names.as_slice() {
+            [_] => String::new(),
+            names => format!(" of {} rotors", names.join(", ")),
         };
         let words = format!(" throttle{whose}{volts}{left}{band}");
         list.say(name, throttle, "", words).in_verdict();
@@ -482,7 +484,11 @@ fn model(list: &mut List, compiled: &Compiled) {
         .map(|from| Some(from).filter(|from| !from.is_empty()))
         .collect();
     let is_in_verdict = uncertainty.iter().any(Option::is_some) || borrowed.iter().any(Option::is_some);
-    list.say_of_each("pair", "", kinds.len(), &told)
+    let name = match airframe.single_rotors.is_empty() {
+        true => "pair",
+        false => "units",
+    };
+    list.say_of_each(name, "", kinds.len(), &told)
         .in_verdict_if(is_in_verdict)
         .json("borrowed_from", one_or_list(&borrowed))
         .json("uncertainty", one_or_list(&uncertainty));
@@ -596,7 +602,7 @@ fn inverse(list: &mut List, compiled: &Compiled) {
     let evaluator = of_pairs.as_ref().map(|of| of.evaluator);
     let (name, words) = match evaluator {
         Some(evaluator) => (evaluator.name(), format!(": {}", evaluator.description())),
-        None => (String::new(), "none: no unit is a pair".to_owned()),
+        None => Default::default(),
     };
     list.say("evaluator", name, "", words)
         .json("evaluator", evaluator.map(|evaluator| evaluator.name()))
@@ -642,7 +648,7 @@ fn inverse(list: &mut List, compiled: &Compiled) {
         })
     });
     let proof = match &of_pairs {
-        None => list.say("proof", "", "", "none: no unit is a pair"),
+        None => list.say("proof", "", "", ""),
         Some(of) => {
             let (left, points) = (100.0 * of.certificate.margin(), of.residual.points);
             let words = format!("; {left:.1} % of the tolerance left, {points} efforts observed");

@@ -26,7 +26,7 @@ fn hover_is_that_of_the_pair() {
     let pair = &compiled.maps[0];
     let voltage = compiled.airframe.voltage.as_ref().unwrap();
     for at in &hover.at {
-        let [upper, lower] = [at.upper_throttle, at.lower_throttle].map(Option::unwrap);
+        let [upper, lower] = [&at.layers[0], &at.layers[1]].map(|of| of.throttle);
         assert!(upper[1] - upper[0] < 1e-6 && lower[1] - lower[0] < 1e-6, "{at:?}");
         let [f, q] = pair.efforts([upper[0], lower[0]]);
         let volts = at.voltage_v.unwrap();
@@ -80,16 +80,64 @@ fn hover_has_the_least_and_the_greatest_throttle_of_a_layer() {
             14.8,
         )
         .unwrap();
-    for (throttle, outputs) in [
-        (at.upper_throttle, at.upper_outputs),
-        (at.lower_throttle, at.lower_outputs),
-    ] {
-        let (throttle, outputs) = (throttle.unwrap(), outputs.unwrap());
-        assert_eq!(throttle, outputs.map(|output| f64::from(throttles[output])));
-        assert!(throttle[1] - throttle[0] > 0.1, "{at:?}");
+    let layers: Vec<&str> = at.layers.iter().map(|of| of.layer).collect();
+    assert_eq!(layers, ["upper", "lower"]);
+    for of in &at.layers {
+        assert_eq!(of.throttle, of.outputs.map(|output| f64::from(throttles[output])));
+        assert!(of.throttle[1] - of.throttle[0] > 0.1, "{at:?}");
     }
     let text = Checked::new(compiled).verdict();
     assert!(text.contains(" (output ") && text.contains("hover"), "{text}");
+}
+
+/// Single rotors are a layer of their own, in words and in JSON; of a quad nothing is said of a pair.
+#[test]
+fn hover_of_single_rotors_is_that_of_no_upper_one() {
+    let y4 = include_str!("../../../airframes/y4.toml");
+    let compiled = compile(&Source::new("y4.toml", y4)).unwrap_or_else(|faults| panic!("{faults}"));
+    let checked = Checked::new(compiled);
+    assert!(
+        checked
+            .verdict()
+            .contains(" throttle of upper, lower, single rotors"),
+        "{}",
+        checked.verdict()
+    );
+    let json = checked.json(());
+    for (key, outputs) in [("upper", 1..2), ("lower", 2..3), ("single", 0..4)] {
+        let found = json["hover"]["at"][1][format!("{key}_outputs")][0]
+            .as_u64()
+            .unwrap();
+        assert!(outputs.contains(&found), "{key}: {json}");
+    }
+    let start = y4.split("[[pair]]").next().unwrap();
+    let rotor = "[[rotor]]\nname = \"arm\"\nthrust_n = [1.786702, 33.4751, -7.684862]\ntorque_nm = [0.0947581, 0.5109395, -0.06253742]\n";
+    let unit = |(channel, (x, y, spin)): (usize, (f64, f64, &str))| {
+        format!(
+            "[[unit]]\nposition_m = [{x}, {y}, 0.0]\nupper_spin = \"{spin}\"\nrotor = \"arm\"\nchannels = [{channel}]\n"
+        )
+    };
+    let units = [
+        (0.3, 0.3, "ccw"),
+        (-0.3, -0.3, "ccw"),
+        (0.3, -0.3, "cw"),
+        (-0.3, 0.3, "cw"),
+    ];
+    let units: String = units.into_iter().enumerate().map(unit).collect();
+    let quad = format!("{start}{rotor}{units}[vehicle]\nmass_kg = 4.2\n")
+        .replace("a coaxial pair at the rear, ", "");
+    let compiled = compile(&Source::new("quad.toml", quad)).unwrap_or_else(|faults| panic!("{faults}"));
+    let checked = Checked::new(compiled);
+    let report = checked.report().to_lowercase();
+    for word in ["upper", "lower", "pair", "coaxial", "det j"] {
+        assert!(!report.contains(word), "{word}: {report}");
+    }
+    let json = checked.json(());
+    let at = &json["hover"]["at"][0];
+    assert!(
+        at["single_throttle"][0].is_number() && at.get("lower_throttle").is_none(),
+        "{at}"
+    );
 }
 
 #[test]

@@ -106,8 +106,9 @@ class Hand {
       wrench: (at?.wrench ?? [0, 0, 0, hover_n]).map(limit),
       volts: within(at?.volts, volts),
       density: within(at?.density, density),
-      failed: (at?.failed ?? []).filter((channel) => channel < 2 * units.length),
+      failed: (at?.failed ?? []).filter((channel) => units.some(({ channels }) => channels.includes(channel))),
     };
+    document.getElementById("rings").hidden = units.every(({ channels }) => channels.length === 1);
     this.sliders();
     this.rotors();
     this.frame();

@@ -300,7 +300,10 @@ async function assemble(built, files, form) {
   }
   if (!isFramed) return;
   const { frame, name } = form, file = `${name || `my-${parameters ? "airframe" : frame}`}.toml`;
-  const more = [...(tables ? ["--pair", tables.name] : []), ...numbers("new"), ...(name ? ["--name", name] : [])];
+  // Files of several pairs, each by the name of its file; `new` puts front and rear where they belong.
+  const pairs = bench || of("pair").length < 2 ? [] : of("pair").map((file) => `${file.replace(/\.\w+$/, "")}=${file}`);
+  const borne = pairs.length ? pairs : tables ? [tables.name] : [];
+  const more = [...borne.flatMap((pair) => ["--pair", pair]), ...numbers("new"), ...(name ? ["--name", name] : [])];
   const rare = bench ? [] : options;
   const words = parameters ? ["import", parameters, ...more, "-o", file, ...rare]
     : ["new", "--frame", frame, ...more, ...await order(frame, form.stack), "-o", file, ...rare];
@@ -561,11 +564,16 @@ function fill(table, text) {
   table.replaceChildren(element("caption", { textContent: above.join(" "), hidden: above.join("") === "" }), element("tbody", {}, ...rows.map((row) => element("tr", {}, ...cells(row)))));
 }
 
+// Whether the frame is that of a file, and no choice of the form has a part in it.
+const isOfFile = () => Boolean(view.told?.verdict) && state.form.frame === fresh().form.frame
+  && (state.own ? !view.airframe : view.files.some(({ kind }) => kind === "parameters"));
+const rotorsInWords = () => view.told.verdict.match(/^rotors +(.*?)(, arms.*)?$/m)[1];
 function renderFields() {
   const { scene } = view.told ?? {};
   for (const id of [...FIELDS, ...Object.keys(KEYS)]) {
     const field = $(id), path = KEYS[id], refusal = view.refusals[id];
-    const typed = path ? (state.own ?? state).keys[path] ?? (view.isExample ? "" : scene?.[id] ?? "") : state.form[id];
+    let typed = path ? (state.own ?? state).keys[path] ?? (view.isExample ? "" : scene?.[id] ?? "") : state.form[id];
+    if (id === "frame" && isOfFile()) [typed, field.lastElementChild.textContent] = ["file", `of the file: ${rotorsInWords()}`];
     if (document.activeElement !== field || field.tagName === "SELECT") field.value = typed;
     field.setAttribute("aria-invalid", Boolean(refusal));
     let note = $(`${id}-refused`);
@@ -605,6 +613,8 @@ function renderFiles() {
   const trust = measured ? `known within ${measured}` : predicted ? `predicted: ${predicted}` : "known";
   $("read").hidden = !bench.length;
   $("read").textContent = `${bench.join("; ")}. ${pair ? `The pair is ${trust}` : "No pair was made of it yet"}.`;
+  const maps = files.filter(({ kind }) => kind === "map").map(({ name }) => name);
+  if (maps.length > 1) $("read").append(` ${maps.join(" and ")} are read as benches of one pair. Of two pairs, save the tables of each as front.toml and rear.toml, and drop both.`);
   fill($("pair-report"), told);
   $("pair-report").closest("details").hidden = !told;
 }
@@ -632,7 +642,7 @@ function renderNumbers() {
   const lack = !numbers ? "no airframe yet" : mass === null ? "needs the mass" : "the weight is not carried";
   const at = volts ? ` at ${volts} V` : "";
   const rows = [
-    ["Hover throttle", throttles?.map((ends, layer) => span(ends) + (throttles.length > 1 ? [" upper", " lower"][layer] : "")).join(", "),
+    ["Hover throttle", throttles?.map(([layer, ends]) => span(ends) + (throttles.length > 1 ? ` ${layer}` : "")).join(", "),
       usual ? `usual: ${span(usual)}${at}, where these rotors give 30 to 60 % of their largest thrust` : "usual: 30 to 60 % of the largest thrust"],
     ["Thrust over weight", ratio && ratio.toFixed(2), `usual: 1.7 to 3.3${at}`],
     ["Yaw left in hover", yaw && `${short(yaw)} N m${share ? `, ${percent(share)} of the roll` : ""}`, "usual: 2 to 10 % of the roll"],

@@ -50,8 +50,8 @@ pub struct Numbers {
     pub mass_kg: Option<f64>,
     /// Voltage, V; `None` where it has no effect.
     pub volts: Option<f64>,
-    /// Least and greatest throttle in hover, of the upper and, where there are any, of the lower rotors; empty without hover.
-    pub hover: Vec<[f64; 2]>,
+    /// Layers of rotors, each with its least and greatest throttle in hover; empty without hover.
+    pub hover: Vec<(&'static str, [f64; 2])>,
     /// Throttles at which this airframe gives a usual share of its largest bare thrust.
     pub usual_hover: Option<[f64; 2]>,
     /// Largest bare thrust over weight.
@@ -75,12 +75,15 @@ impl Numbers {
             .map(|voltage| voltage.reference);
         let ceiling = f64::from(compiled.thrust_range_n[1]);
         let throttles =
-            |hover: &HoverAt| -> Vec<[f64; 2]> { hover.layers().into_iter().map(|(ends, _)| ends).collect() };
+            |hover: &HoverAt| -> Vec<_> { hover.layers.iter().map(|of| (of.layer, of.throttle)).collect() };
         let usual = USUAL.map(|share| throttles(&HoverAt::new(compiled, share * ceiling, volts)));
         let [least, most] = &usual;
         let usual = (!least.is_empty() && !most.is_empty()).then(|| {
-            let least = least.iter().map(|ends| ends[0]).fold(f64::INFINITY, f64::min);
-            [least, most.iter().map(|ends| ends[1]).fold(0.0, f64::max)]
+            let least = least
+                .iter()
+                .map(|(_, ends)| ends[0])
+                .fold(f64::INFINITY, f64::min);
+            [least, most.iter().map(|(_, ends)| ends[1]).fold(0.0, f64::max)]
         });
         let at = hover.as_ref().and_then(|hover| hover.at.last());
         let left = |axis: Axis| {

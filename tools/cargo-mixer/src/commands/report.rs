@@ -33,7 +33,7 @@ pub struct ReportArgs {
     /// Overwrite the file if it is there
     #[arg(long)]
     force: bool,
-    /// The pair whose maps are drawn, of an airframe with several [default: the first]
+    /// The pair of the bench files and of the flight's points, of an airframe with several [default: the first]
     #[arg(long, value_name = "NAME")]
     pair: Option<String>,
     /// Bench files of the pair, to be shown beside the model
@@ -80,6 +80,10 @@ impl ReportArgs {
 /// # Errors
 /// Remembered options that are none, a file that cannot be read or that holds a single rotor.
 pub fn bench_points(study: &Study<'_>, files: &[Text], given: Settings) -> Result<BenchPoints, String> {
+    if study.of_pair().is_none() {
+        let name = &study.compiled.airframe.name;
+        return Err(format!("no unit of {name} is a pair, as bench files are of"));
+    }
     let settings = match given.options.as_slice() {
         [] => remembered(study)?,
         _ => given,

@@ -91,8 +91,10 @@ fn pages_are_well_formed_and_complete() {
             .map(|section| (section.attribute("id").unwrap(), section))
             .collect();
         let anchors: Vec<&str> = sections.iter().map(|(id, _)| *id).collect();
+        let has_single = usize::from(anchors.contains(&"rotors"));
+        assert_eq!(has_single == 1, compiled.airframe.single_units() > 0, "{name}");
         assert!(
-            anchors.len() == 11 && anchors[0] == "layout" && anchors[10] == "matrices",
+            anchors.len() == 11 + has_single && anchors[0] == "layout" && anchors.last() == Some(&"matrices"),
             "{name}: {anchors:?}"
         );
         for (id, section) in &sections {
@@ -231,7 +233,7 @@ fn sweeps_are_rectangular_with_units_in_the_header() {
                 for (column, cell) in header.iter().zip(&record) {
                     // A single rotor has no lower one.
                     let may_be_empty =
-                        figure == Data::Level || ["voltage_v", "lower_channel"].contains(&column);
+                        figure == Data::Level || column == "voltage_v" || column.ends_with("_channel");
                     let free =
                         column == "mixer" || column.ends_with("_spin") || (may_be_empty && cell.is_empty());
                     assert!(
@@ -271,6 +273,26 @@ fn the_error_stays_below_its_bound() {
             "{largest:?} {allowed:?}"
         );
     }
+}
+
+/// A quadcopter of the rotors of y4, with its weight.
+fn quad() -> String {
+    let y4 = fs::read_to_string(root().join("airframes/y4.toml")).unwrap();
+    let part = |from: &str, to: &str| {
+        let start = y4.find(from).unwrap();
+        y4[start..start + y4[start..].find(to).unwrap()].to_owned()
+    };
+    let mut text =
+        "name = \"quad\"\n".to_owned() + &part("[throttle]", "[[pair]]") + &part("[[rotor]]", "[[unit]]");
+    for (channel, (x, y, spin)) in [(3, 3, "ccw"), (-3, -3, "ccw"), (3, -3, "cw"), (-3, 3, "cw")]
+        .into_iter()
+        .enumerate()
+    {
+        text += &format!(
+            "[[unit]]\nposition_m = [{x}.0e-1, {y}.0e-1, 0.0]\nupper_spin = \"{spin}\"\nrotor = \"front\"\nchannels = [{channel}]\n"
+        );
+    }
+    text + "[vehicle]\nmass_kg = 4.2\n"
 }
 
 #[track_caller]

@@ -1,6 +1,6 @@
 //! The static comparison of the paper's section V-A: yaw commands over the available range at
 //! constant total thrust, through the compiled mixer and through the conventional one, and what
-//! each coaxial unit then really gives.
+//! each unit then really gives.
 
 use mixer_compiler::airframe::Axis;
 use mixer_rt::Wrench;
@@ -14,7 +14,7 @@ use isolated_rotors::IsolatedTables;
 pub struct YawResponse {
     /// Throttles `[u, l]` of every unit.
     pub throttles: Vec<[f64; 2]>,
-    /// Thrust and torque `[f (N), Q (N m)]` that these throttles give by the pair's map, per unit.
+    /// Thrust and torque `[f (N), Q (N m)]` that these throttles give by the unit's map, per unit.
     pub efforts: Vec<[f64; 2]>,
     /// The wrench of all units: roll, pitch, yaw (N m), thrust (N).
     pub wrench: [f64; 4],
@@ -36,6 +36,8 @@ pub struct Row {
 /// The whole sweep.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Comparison {
+    /// The compiled mixer and the conventional one in a word: `coaxial` where a unit is a pair.
+    pub names: [&'static str; 2],
     /// Total thrust asked, N.
     pub thrust_n: f64,
     /// Thrust of each unit in the least-norm efforts for that thrust alone, N: T / n on vertical
@@ -48,6 +50,14 @@ pub struct Comparison {
 }
 
 impl Comparison {
+    /// The compiled mixer in a sentence.
+    pub fn own(&self) -> String {
+        match self.names[0] {
+            "this" => "this mixer".to_owned(),
+            name => format!("the {name} mixer"),
+        }
+    }
+
     /// `count` yaw commands from the least to the largest that the compiled mixer delivers at the
     /// study's thrust; `None` where the airframe does not serve yaw, or the thrust leaves no room
     /// for any.
@@ -76,7 +86,9 @@ impl Comparison {
                 }
             })
             .collect();
+        let is_coaxial = !study.compiled.airframe.pairs.is_empty();
         Some(Comparison {
+            names: [if is_coaxial { "coaxial" } else { "this" }, "conventional"],
             thrust_n: study.thrust_n,
             share_n: (0..study.compiled.airframe.units.len()).map(share).collect(),
             kappa_m: conventional.kappa_m,

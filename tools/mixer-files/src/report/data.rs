@@ -1,6 +1,6 @@
 //! The data of the figures as CSV, with units in the header.
 
-use mixer_compiler::airframe::Axis;
+use mixer_compiler::airframe::{Axis, Rotor};
 
 use crate::report::authority;
 use crate::report::bench::BenchPoints;
@@ -48,12 +48,18 @@ impl Data {
         (Data::Level, "level", "Throttles and power in level flight, against thrust and voltage"),
         (Data::Hover, "hover", "Throttles in hover against voltage; needs [vehicle] and [voltage]"),
         (Data::Yaw, "yaw", "What every unit gives over yaw at constant thrust, by both mixers"),
-        (Data::Attainable, "attainable", "Border of a unit's attainable set against voltage"),
+        (Data::Attainable, "attainable", "Border of a pair's attainable set against voltage"),
         (Data::Authority, "authority", "Largest torque about each served axis against thrust"),
-        (Data::Forward, "forward", "Thrust, torque and det J of a unit over both throttles"),
+        (Data::Forward, "forward", "Thrust, torque and det J of a pair over both throttles"),
         (Data::Inverse, "inverse", "Throttles over the attainable set, by the emitted tables"),
         (Data::Error, "error", "What the emitted inverse misses over the attainable set"),
     ];
+
+    /// Whether it is of a pair's map.
+    pub(crate) fn is_of_pair(self) -> bool {
+        use Data::{Attainable, Error, Forward, Inverse};
+        matches!(self, Attainable | Forward | Inverse | Error)
+    }
 
     /// Its word on the command line.
     pub(crate) fn word(self) -> &'static str {
@@ -68,10 +74,19 @@ const SIDE: usize = 31;
 ///
 /// # Errors
 /// A yaw sweep of an airframe that does not serve yaw, or at a thrust that leaves no room for it;
-/// hover without a mass or without an effect of voltage.
+/// hover without a mass or without an effect of voltage; maps of a pair where no unit is one.
 pub fn sweep(study: &Study<'_>, figure: Data) -> Result<String, String> {
+    if figure.is_of_pair() && study.of_pair().is_none() {
+        let (name, word) = (&study.compiled.airframe.name, figure.word());
+        return Err(format!(
+            "no unit of {name} is a pair, whose {word} data these are"
+        ));
+    }
     let lines = match figure {
-        Data::Yaw => yaw(&Comparison::sweep(study, YAW_COMMANDS).ok_or_else(|| no_yaw(study))?),
+        Data::Yaw => yaw(
+            study,
+            &Comparison::sweep(study, YAW_COMMANDS).ok_or_else(|| no_yaw(study))?,
+        ),
         Data::Layout => layout(study),
         Data::Level => level_lines(study),
         Data::Hover => hover(study)?,
@@ -96,19 +111,31 @@ fn no_yaw(study: &Study<'_>) -> String {
     }
 }
 
-fn yaw(comparison: &Comparison) -> Vec<String> {
+fn yaw(study: &Study<'_>, comparison: &Comparison) -> Vec<String> {
+    let all = &study.compiled.airframe.units;
     let given = "roll_given_nm,pitch_given_nm,yaw_given_nm,thrust_given_n";
     let mut header = format!("mixer,yaw_asked_nm,throttle_limited,{given}");
-    for unit in 0..comparison.share_n.len() {
-        for quantity in ["upper_throttle", "lower_throttle", "thrust_n", "torque_nm"] {
-            header.push_str(&format!(",unit_{unit}_{quantity}"));
+    for (index, unit) in all.iter().enumerate() {
+        for rotor in unit.rotors() {
+            header.push_str(&format!(",unit_{index}_{}_throttle", rotor.layer));
         }
+        header.push_str(&format!(",unit_{index}_thrust_n,unit_{index}_torque_nm"));
     }
     let mut lines = vec![header];
     for row in &comparison.rows {
-        for (mixer, answer) in [("coaxial", &row.coaxial), ("conventional", &row.conventional)] {
-            let units = answer.throttles.iter().zip(&answer.efforts);
-            let units = units.flat_map(|(&[u, l], &[f, q])| [u, l, f, q]);
+        for (mixer, answer) in comparison
+            .names
+            .into_iter()
+            .zip([&row.coaxial, &row.conventional])
+        {
+            let units = answer.throttles.iter().zip(&answer.efforts).zip(all);
+            let units = units.flat_map(|((throttles, efforts), unit)| {
+                throttles
+                    .iter()
+                    .take(unit.rotors().count())
+                    .chain(efforts)
+                    .copied()
+            });
             let values = answer.wrench.into_iter().chain(units);
             let limited = u8::from(!answer.within);
             lines.push(format!("{mixer},{},{limited},{}", cell(row.yaw_nm), line(values)));
@@ -118,20 +145,33 @@ fn yaw(comparison: &Comparison) -> Vec<String> {
 }
 
 fn layout(study: &Study<'_>) -> Vec<String> {
-    let mut lines = vec!["unit,x_m,y_m,z_m,upper_spin,lower_spin,upper_channel,lower_channel".to_owned()];
-    for (index, unit) in study.compiled.airframe.units.iter().enumerate() {
-        lines.push(format!(
-            "{index},{},{},{},{},{}",
-            line(unit.position_m),
-            unit.upper_spin.name(),
-            unit.lower_channel
-                .map_or("", |_| unit.upper_spin.reversed().name()),
-            unit.upper_channel,
-            unit.lower_channel
-                .map_or_else(String::new, |channel| channel.to_string())
-        ));
+    let airframe = &study.compiled.airframe;
+    let columns = |end: &str| per_layer(study, |layer, _| format!(",{layer}_{end}"));
+    let mut lines = vec![format!(
+        "unit,x_m,y_m,z_m{}{}",
+        columns("spin"),
+        columns("channel")
+    )];
+    for (index, unit) in airframe.units.iter().enumerate() {
+        let of = |text: &dyn Fn(Rotor) -> String| {
+            per_layer(study, |layer, _| {
+                let rotor = unit.rotors().find(|rotor| rotor.layer == layer);
+                format!(",{}", rotor.map_or_else(String::new, text))
+            })
+        };
+        let (spins, channels) = (
+            of(&|rotor| rotor.spin.name().to_owned()),
+            of(&|rotor| rotor.channel.to_string()),
+        );
+        lines.push(format!("{index},{}{spins}{channels}", line(unit.position_m)));
     }
     lines
+}
+
+/// A text for each layer of rotors, by its word and its place.
+fn per_layer(study: &Study<'_>, text: impl Fn(&str, usize) -> String) -> String {
+    let layers = study.compiled.airframe.layers().enumerate();
+    layers.map(|(place, (layer, _))| text(layer, place)).collect()
 }
 
 /// A number, or nothing where there is none.
@@ -140,16 +180,17 @@ fn or_empty(x: f64) -> String {
 }
 
 fn level_lines(study: &Study<'_>) -> Vec<String> {
-    let mut lines = vec!["voltage_v,thrust_n,upper_throttle,lower_throttle,power_w".to_owned()];
+    let throttles = per_layer(study, |layer, _| format!(",{layer}_throttle"));
+    let mut lines = vec![format!("voltage_v,thrust_n{throttles},power_w")];
     let reference_v = study.compiled.airframe.reference_v();
     for (volts, _) in study.voltages() {
         let text = volts.map_or(String::new(), cell);
         for level in level::against_thrust(study, volts, THRUSTS) {
-            let [upper, lower] = level.throttles.map(or_empty);
+            let throttles = per_layer(study, |_, place| format!(",{}", or_empty(level.throttles[place])));
             // The file's map of power holds at the reference voltage.
             let holds = volts.is_none_or(|volts| volts == reference_v);
             let power = or_empty(if holds { level.power_w } else { f64::NAN });
-            lines.push(format!("{text},{},{upper},{lower},{power}", cell(level.at)));
+            lines.push(format!("{text},{}{throttles},{power}", cell(level.at)));
         }
     }
     lines
@@ -163,10 +204,11 @@ fn hover(study: &Study<'_>) -> Result<Vec<String>, String> {
             study.compiled.airframe.name
         ));
     }
-    let mut lines = vec!["voltage_v,upper_throttle,lower_throttle".to_owned()];
+    let throttles = per_layer(study, |layer, _| format!(",{layer}_throttle"));
+    let mut lines = vec![format!("voltage_v{throttles}")];
     for level in levels {
-        let [upper, lower] = level.throttles.map(or_empty);
-        lines.push(format!("{},{upper},{lower}", cell(level.at)));
+        let throttles = per_layer(study, |_, place| format!(",{}", or_empty(level.throttles[place])));
+        lines.push(format!("{}{throttles}", cell(level.at)));
     }
     Ok(lines)
 }

@@ -58,8 +58,14 @@ pub fn layout(airframe: &Airframe) -> Figure {
         cy - start,
         -length
     ));
-    figure.entry("upper-spin", "upper rotor");
-    figure.entry("lower-spin", "lower rotor");
+    for (layer, _) in airframe.layers() {
+        let class = if layer == "lower" {
+            "lower-spin"
+        } else {
+            "upper-spin"
+        };
+        figure.entry(class, &format!("{layer} rotor"));
+    }
     figure.entry("forward", "forward");
     figure
 }

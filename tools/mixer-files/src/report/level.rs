@@ -7,12 +7,12 @@ use crate::report::study::{Condition, Study};
 const VOLTAGES: usize = 41;
 
 /// Level flight at one thrust or voltage.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Level {
     /// Total thrust, N, or voltage, V.
     pub at: f64,
-    /// Mean throttles of the upper and of the lower rotors, single ones among the upper; NaN where the thrust is not delivered.
-    pub throttles: [f64; 2],
+    /// Mean throttle of each of the airframe's layers of rotors; NaN where the thrust is not delivered.
+    pub throttles: Vec<f64>,
     /// Electrical power of all rotors at the reference voltage, W; NaN where the thrust is not
     /// delivered, or the file has no power map.
     pub power_w: f64,
@@ -42,30 +42,21 @@ pub fn against_voltage(study: &Study<'_>) -> Vec<Level> {
 
 fn level(study: &Study<'_>, at: f64, thrust_n: f64, condition: &Condition) -> Level {
     let (throttles, delivered) = study.mix([0.0, 0.0, 0.0, thrust_n], condition);
-    if !delivered {
-        return Level {
-            at,
-            throttles: [f64::NAN; 2],
-            power_w: f64::NAN,
-        };
-    }
     let airframe = &study.compiled.airframe;
-    let mut channels = vec![0.0; airframe.rotors()];
+    let mut channels = vec![f64::NAN; airframe.rotors()];
     for (unit, pair) in airframe.units.iter().zip(&throttles) {
         for (channel, throttle) in unit.channels().zip(pair) {
-            if let Some(place) = channels.get_mut(channel) {
+            if let Some(place) = channels.get_mut(channel).filter(|_| delivered) {
                 *place = *throttle;
             }
         }
     }
-    let mean = |rotor: usize| {
-        let units = airframe.units.iter().zip(&throttles);
-        let turning = units.filter(|(unit, _)| unit.channels().nth(rotor).is_some());
-        turning.clone().map(|(_, pair)| pair[rotor]).sum::<f64>() / turning.count() as f64
+    let mean = |(_, outputs): (_, Vec<usize>)| {
+        outputs.iter().map(|output| channels[*output]).sum::<f64>() / outputs.len() as f64
     };
     Level {
         at,
-        throttles: [mean(0), mean(1)],
+        throttles: airframe.layers().map(mean).collect(),
         power_w: airframe.power_w(&channels).unwrap_or(f64::NAN),
     }
 }

@@ -1,6 +1,8 @@
 //! Colour maps: forward (Fig. 3 and 4 of the paper), inverse over the attainable set (Fig. 5),
 //! error of the inverse.
 
+use std::slice::from_ref;
+
 use mixer_compiler::diagnostic::rounded_up;
 
 use crate::report::bench::{BenchPoint, BenchPoints};
@@ -131,9 +133,9 @@ pub fn residuals(study: &Study<'_>, effort: Effort, bench: &BenchPoints) -> Opti
 /// Bands of colour of the residuals' bar.
 const RESIDUAL_BANDS: usize = 20;
 
-/// A plot over thrust and torque that has the whole attainable set in view.
-pub(super) fn over_efforts(study: &Study<'_>, title: &str, k: [f64; 2]) -> Figure {
-    let border = study.border_efforts();
+/// A plot over thrust and torque that has the whole attainable sets in view.
+pub(super) fn over_efforts(studies: &[Study<'_>], title: &str, k: [f64; 2]) -> Figure {
+    let border: Vec<[f64; 2]> = studies.iter().flat_map(Study::border_efforts).collect();
     let extent = |index: usize| {
         let values = border.iter().map(|efforts| efforts[index] * k[index]);
         widened(range(values), 0.04)
@@ -145,7 +147,7 @@ pub(super) fn over_efforts(study: &Study<'_>, title: &str, k: [f64; 2]) -> Figur
 pub fn inverse(study: &Study<'_>, rotor: usize) -> Figure {
     let field = Field::new(SIDE, |square| study.throttles(square)[rotor]);
     let title = format!("{} throttle over the attainable set", ["Upper", "Lower"][rotor]);
-    let mut figure = over_efforts(study, &title, [1.0, 1.0])
+    let mut figure = over_efforts(from_ref(study), &title, [1.0, 1.0])
         .beside_bar(200.0)
         .reading("inverse", &[EFFORTS[0], EFFORTS[1], (UPPER, ""), (LOWER, "")]);
     let painting = Painting {
@@ -176,7 +178,7 @@ pub fn error(study: &Study<'_>, effort: Effort, field: &Field) -> Figure {
     let title = format!("{} that the inverse misses", effort.name());
     let hover = ["error-thrust", "error-torque"][effort as usize];
     let quantities = [EFFORTS[0], EFFORTS[1], ("error about", effort.unit())];
-    let mut figure = over_efforts(study, &title, [1.0, 1.0])
+    let mut figure = over_efforts(from_ref(study), &title, [1.0, 1.0])
         .beside_bar(200.0)
         .reading(hover, &quantities);
     let bound = error_bound(study, effort);

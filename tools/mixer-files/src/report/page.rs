@@ -20,6 +20,7 @@ use crate::report::bench_check::bench_check;
 use crate::report::comparison::Comparison;
 use crate::report::data::{Data, THRUSTS, YAW_COMMANDS};
 use crate::report::effort::Effort;
+use crate::report::field::Field;
 use crate::report::figure::Figure;
 use crate::report::layout;
 use crate::report::level;
@@ -59,10 +60,23 @@ pub struct Content {
     pub model: String,
 }
 
+/// A pair whose maps are drawn.
+struct Drawn<'a> {
+    study: Study<'a>,
+    of: &'a OfPair,
+    errors: [Field; 2],
+}
+
 /// The whole page.
 pub fn page(study: &Study<'_>, bench: Option<&BenchPoints>, digest: Option<&str>) -> String {
     let Content { body, model } = content(study, bench, digest);
-    let title = html! { title { (printable(&study.compiled.airframe.name)) ": coaxial mixer" } };
+    let airframe = &study.compiled.airframe;
+    let what = if airframe.pairs.is_empty() {
+        "mixer"
+    } else {
+        "coaxial mixer"
+    };
+    let title = html! { title { (printable(&airframe.name)) ": " (what) } };
     // The head's elements without content are closed, as XML demands.
     format!(
         "<!DOCTYPE html>\n<html xmlns=\"http://www.w3.org/1999/xhtml\" lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n\
@@ -77,10 +91,34 @@ pub fn page(study: &Study<'_>, bench: Option<&BenchPoints>, digest: Option<&str>
 }
 
 /// What stands in the page, and what its script needs.
-pub fn content(study: &Study<'_>, bench: Option<&BenchPoints>, digest: Option<&str>) -> Content {
+pub fn content<'a>(study: &Study<'a>, bench: Option<&BenchPoints>, digest: Option<&str>) -> Content {
     let compiled = study.compiled;
     let airframe = &compiled.airframe;
-    let errors = Effort::BOTH.map(|effort| maps::error_field(study, effort));
+    let kinds = study.of_each();
+    let drawn = |of: &Study<'a>| {
+        Some(Drawn {
+            of: of.of_pair()?.1,
+            errors: Effort::BOTH.map(|effort| maps::error_field(of, effort)),
+            study: of.clone(),
+        })
+    };
+    let pairs: Vec<Drawn<'_>> = kinds.iter().filter_map(drawn).collect();
+    let rotors = &kinds[airframe.pairs.len()..];
+    let of_each = |draw: &dyn Fn(&Drawn<'_>) -> Markup| {
+        let title = |of: &Study<'_>| {
+            of.kind()
+                .filter(|_| pairs.len() > 1)
+                .map(|(_, name)| printable(name))
+        };
+        html! {
+            @for (place, pair) in pairs.iter().enumerate() {
+                div data-pair=(place) {
+                    @if let Some(name) = title(&pair.study) { h3 { "\u{201c}" (name) "\u{201d}" } }
+                    (draw(pair))
+                }
+            }
+        }
+    };
     let facts = mixer_facts::facts(compiled);
     // Anchor, title, content.
     let mut sections = vec![
@@ -90,12 +128,25 @@ pub fn content(study: &Study<'_>, bench: Option<&BenchPoints>, digest: Option<&s
         ("authority", "Authority", authority_section(study)),
         ("comparison", "Yaw at constant thrust", comparison_section(study)),
     ];
-    if let Some((_, of)) = study.of_pair() {
+    if !rotors.is_empty() {
+        sections.push(("rotors", "Single rotors", rotors_section(study, rotors)));
+    }
+    if !pairs.is_empty() {
+        let is_benched = |pair: &Drawn<'_>| pair.study.index == study.index;
+        let forward = |pair: &Drawn<'_>| forward_section(&pair.study, bench.filter(|_| is_benched(pair)));
         sections.extend([
-            ("attainable", "Attainable set", attainable_section(study)),
-            ("forward", "Forward maps", forward_section(study, bench)),
-            ("inverse", "Inverse maps", inverse_section(study)),
-            ("error", "Error of the inverse", error_section(study, of, &errors)),
+            (
+                "attainable",
+                "Attainable set",
+                of_each(&|pair| attainable_section(&pair.study)),
+            ),
+            ("forward", "Forward maps", of_each(&forward)),
+            (
+                "inverse",
+                "Inverse maps",
+                of_each(&|pair| inverse_section(&pair.study)),
+            ),
+            ("error", "Error of the inverse", of_each(&error_section)),
         ]);
     }
     sections.extend([
@@ -105,7 +156,6 @@ pub fn content(study: &Study<'_>, bench: Option<&BenchPoints>, digest: Option<&s
     let body = html! {
         h1 { (printable(&airframe.name)) }
         p.lead { (printable(&airframe.description)) }
-        @if let Some(whose) = study.whose() { p { (printable(&whose)) } }
         nav id="contents" aria-label="Contents" { @for (anchor, title, _) in &sections { a href={ "#" (anchor) } { (title) } " " } }
         (warnings(study, bench))
         (table::summary(study, &facts, digest))
@@ -115,14 +165,15 @@ pub fn content(study: &Study<'_>, bench: Option<&BenchPoints>, digest: Option<&s
         footer {
             "Made by " code { "cargo mixer report" } " " (env!("CARGO_PKG_VERSION")) " from "
             code { (printable(&compiled.source.file_name())) }
-            ". Body frame FRD, SI units; clockwise yaw seen from above is positive, thrust is positive upwards; the torque \
-             of a unit is positive where its lower rotor outweighs the upper one."
+            ". Body frame FRD, SI units; clockwise yaw seen from above is positive, thrust is positive upwards. "
+            @if !pairs.is_empty() { "The torque of a pair is positive where its lower rotor outweighs the upper one. " }
+            @if !rotors.is_empty() { "That of a single rotor is positive whichever way it turns." }
         }
         a.back href="#contents" { "Contents" }
     };
     Content {
         body: body.into_string(),
-        model: model(study, &errors).to_string(),
+        model: model(study, &pairs).to_string(),
     }
 }
 
@@ -176,10 +227,15 @@ fn figures(figures: &[Markup]) -> Markup {
 }
 
 fn layout_section(study: &Study<'_>) -> Markup {
-    let figure = layout::layout(&study.compiled.airframe);
-    let caption = "Seen from above. \u{2191} output of the upper rotor, \u{2193} of the lower one. Disks are not to scale.";
+    let airframe = &study.compiled.airframe;
+    let figure = layout::layout(airframe);
+    let arrows = match airframe.pairs.is_empty() {
+        true => "The number is the output.",
+        false => "\u{2191} output of the upper rotor, \u{2193} of the lower one.",
+    };
+    let caption = format!("Seen from above. {arrows} Disks are not to scale.");
     html! {
-        (beside(&still(&figure.svg(), caption, &link::sweep(study, Data::Layout)), &table::units(study)))
+        (beside(&still(&figure.svg(), &caption, &link::sweep(study, Data::Layout)), &table::units(study)))
     }
 }
 
@@ -188,8 +244,8 @@ fn level_section(study: &Study<'_>) -> Markup {
     let levels = voltages.map(|(volts, _)| (volts, level::against_thrust(study, volts, THRUSTS)));
     let levels: Vec<_> = levels.collect();
     let mut plots: Vec<Markup> = Vec::new();
-    for (rotor, name) in ["upper", "lower"].into_iter().enumerate() {
-        let figure = plots::throttle(study, &levels, rotor);
+    for (rotor, (name, _)) in study.compiled.airframe.layers().enumerate() {
+        let figure = plots::throttle(study, &levels, (rotor, name));
         let caption = format!("Mean throttle of the {name} rotors.");
         plots.push(curves(study, &figure, &caption, &format!("throttle-{name}")));
     }
@@ -225,27 +281,67 @@ fn comparison_section(study: &Study<'_>) -> Markup {
             }
         };
     };
-    let curves = |figure: Figure, caption, word| curves(study, &figure, caption, word);
+    let curves = |figure: Figure, caption: &str, word: &str| curves(study, &figure, caption, word);
+    let plane = shown(
+        &plots::yaw_plane(study, &comparison),
+        "Thrust and torque of every unit, one point per yaw command (Fig. 6 of the paper).",
+        &link::sweep(study, Data::Yaw),
+    );
+    let thrusts = plots::yaw_thrusts(&comparison);
+    let each = match thrusts.len() {
+        1 => vec![("Thrust of every unit.".to_owned(), "yaw-thrust".to_owned())],
+        _ => comparison
+            .names
+            .map(|name| {
+                (
+                    format!("Thrust of every unit by the {name} mixer."),
+                    format!("yaw-thrust-{name}"),
+                )
+            })
+            .to_vec(),
+    };
+    let thrusts = thrusts
+        .into_iter()
+        .zip(each)
+        .map(|(figure, (caption, word))| curves(figure, &caption, &word));
+    let others = [
+        curves(plots::yaw_total(&comparison), "Total thrust given.", "yaw-total"),
+        curves(
+            plots::yaw_error(&comparison),
+            "Yaw given less yaw asked.",
+            "yaw-error",
+        ),
+    ];
+    let plots: Vec<Markup> = [plane].into_iter().chain(thrusts).chain(others).collect();
+    let airframe = &study.compiled.airframe;
+    let of_units = if airframe.is_unlike() {
+        "units\u{2019} maps"
+    } else {
+        "pair\u{2019}s map"
+    };
+    let mean = |kinds: usize, one: &'static str, mean: &'static str| if kinds > 1 { mean } else { one };
+    let isolated = match (airframe.pairs.len(), airframe.single_rotors.len()) {
+        (0, rotors) => format!(
+            "An isolated rotor has the curve of {}.",
+            mean(rotors, "the file", "the single rotors\u{2019} mean")
+        ),
+        (pairs, rotors) => format!(
+            "An isolated rotor{} is the {} upper one with the lower at rest, f(d, 0): an extrapolation where the bench kept \
+             both turning.",
+            mean(rotors + 1, "", ", a single one too,"),
+            mean(pairs, "map\u{2019}s", "mean pair\u{2019}s")
+        ),
+    };
     html! {
         p {
             "A total thrust of " (shortest(comparison.thrust_n)) " N"
             @if study.hover_n() == Some(comparison.thrust_n) { ", the weight," }
-            " and yaw over the whole range that the coaxial mixer \
+            " and yaw over the whole range that " (comparison.own()) " \
              delivers there. The conventional mixer takes every rotor for isolated, with a torque proportional to its \
-             thrust. Both mixers\u{2019} throttles are put through the pair\u{2019}s map" (study.at_reference()) ": what \
-             is shown is what the rotors give by that map, not what the mixers believe. An isolated rotor is the \
-             map\u{2019}s upper one with the lower at rest, f(d, 0): an extrapolation where the bench kept both turning."
+             thrust. Both mixers\u{2019} throttles are put through the " (of_units) (study.at_reference()) ": what \
+             is shown is what the rotors give by that, not what the mixers believe. " (isolated)
         }
-        (figures(&[
-            shown(
-                &plots::yaw_plane(study, &comparison),
-                "Thrust and torque of every unit, one point per yaw command (Fig. 6 of the paper).",
-                &link::sweep(study, Data::Yaw),
-            ),
-            curves(plots::yaw_thrust(&comparison), "Thrust of every unit.", "yaw-thrust"),
-            curves(plots::yaw_total(&comparison), "Total thrust given.", "yaw-total"),
-            curves(plots::yaw_error(&comparison), "Yaw given less yaw asked.", "yaw-error"),
-        ]))
+        (figures(&plots))
         (table::comparison(&comparison))
     }
 }
@@ -287,17 +383,43 @@ fn authority_section(study: &Study<'_>) -> Markup {
         .filter_map(|axis| Some((axis, hover::band(study.compiled, axis, reference_v)?)))
         .map(|(axis, band)| format!("\u{b1} {} N m of {}", significant(band, 2), axis.name()))
         .collect();
+    let views = study.compiled.airframe.views();
+    let mut sources: Vec<&str> = views
+        .filter_map(|view| Some(view.of.uncertainty()?.source()))
+        .collect();
+    sources.dedup();
     html! {
         p {
             "The largest torque about one axis that the compiled mixer delivers in full, within its tolerance, while it \
              holds the thrust and no other torque is asked, found by asking the mixer itself. "
             (rotor_out)
-            @if let Some((pair, _)) = study.of_pair() && let Some(uncertainty) = &pair.uncertainty && !off.is_empty() {
-                " The pair is " (uncertainty.source()) ": by one standard deviation of its uncertainty the true torques are off by "
+            @if !off.is_empty() {
+                " The model is " (sources.join(" and ")) ": by one standard deviation of its uncertainty the true torques are off by "
                 (off.join(", ")) "."
             }
         }
         (figures(&plots))
+    }
+}
+
+fn rotors_section(study: &Study<'_>, rotors: &[Study<'_>]) -> Markup {
+    let hover = study.hover_n().map_or("", |_| " Diamonds: hover.");
+    let plot = |effort: Effort| {
+        let caption = format!(
+            "{} over the throttle{}.{hover}",
+            effort.name(),
+            study.at_reference()
+        );
+        curves(
+            study,
+            &plots::rotors(rotors, effort),
+            &caption,
+            &format!("rotors-{}", effort.word()),
+        )
+    };
+    html! {
+        (figures(&Effort::BOTH.map(plot)))
+        (table::rotors(study))
     }
 }
 
@@ -396,7 +518,7 @@ fn inverse_section(study: &Study<'_>) -> Markup {
     }
 }
 
-fn error_section(study: &Study<'_>, of: &OfPair, fields: &[crate::report::field::Field; 2]) -> Markup {
+fn error_section(Drawn { study, of, errors }: &Drawn<'_>) -> Markup {
     let observed = &of.residual;
     let at = match study.at_reference().as_str() {
         "" => " with the pair\u{2019}s map".to_owned(),
@@ -412,7 +534,7 @@ fn error_section(study: &Study<'_>, of: &OfPair, fields: &[crate::report::field:
         );
         shown(&maps::error(study, effort, field), &caption, &html! {})
     };
-    let plots: Vec<Markup> = Effort::BOTH.into_iter().zip(fields).map(plot).collect();
+    let plots: Vec<Markup> = Effort::BOTH.into_iter().zip(errors).map(plot).collect();
     html! {
         p {
             "What the emitted inverse misses when its throttles are put through the forward map: the inverse in single \
@@ -440,8 +562,13 @@ fn cost_section(study: &Study<'_>, facts: &[Fact]) -> Markup {
     }
 }
 
-/// What the script needs: the forward map and the error on its grid.
-fn model(study: &Study<'_>, errors: &[crate::report::field::Field; 2]) -> serde_json::Value {
+/// What the script needs: the forward map of each pair and the error on its grid.
+fn model(study: &Study<'_>, pairs: &[Drawn<'_>]) -> serde_json::Value {
+    let pairs: Vec<_> = pairs.iter().map(model_of).collect();
+    serde_json::json!({ "throttle": study.pair.range(), "pairs": pairs })
+}
+
+fn model_of(Drawn { study, errors, .. }: &Drawn<'_>) -> serde_json::Value {
     let terms = study.of_pair().map_or_else(Vec::new, |(pair, _)| {
         let coefficients = pair.thrust_n.iter().zip(&pair.torque_nm);
         let terms = pair.basis.exponents().iter().zip(coefficients);
@@ -457,5 +584,5 @@ fn model(study: &Study<'_>, errors: &[crate::report::field::Field; 2]) -> serde_
         let side = (field.side() - 1) / HOVER_STRIDE + 1;
         serde_json::json!({ "side": side, "largest": largest, "thousandths": thousandths })
     });
-    serde_json::json!({ "throttle": study.pair.range(), "scale": study.pair.scale(), "terms": terms, "errors": grids })
+    serde_json::json!({ "scale": study.pair.scale(), "terms": terms, "errors": grids })
 }

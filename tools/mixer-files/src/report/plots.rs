@@ -1,11 +1,13 @@
 //! Line plots: attainable set against voltage, the yaw sweep of both mixers (Fig. 6), authority,
 //! throttle and power against thrust.
 
+use std::slice::from_ref;
+
 use mixer_compiler::airframe::Axis;
 
 use crate::report::authority::Authority;
 use crate::report::comparison::{Comparison, Row, YawResponse};
-use crate::report::effort::EFFORTS;
+use crate::report::effort::{EFFORTS, Effort};
 use crate::report::figure::Figure;
 use crate::report::level::Level;
 use crate::report::maps::over_efforts;
@@ -18,8 +20,12 @@ pub fn attainable(study: &Study<'_>) -> Figure {
     let largest = voltages
         .iter()
         .fold([1.0f64; 2], |size, (_, k)| [size[0].max(k[0]), size[1].max(k[1])]);
-    let mut figure =
-        over_efforts(study, "Attainable thrust and torque of one unit", largest).reading("plane", &EFFORTS);
+    let mut figure = over_efforts(
+        from_ref(study),
+        "Attainable thrust and torque of one unit",
+        largest,
+    )
+    .reading("plane", &EFFORTS);
     for (index, (volts, k)) in voltages.iter().enumerate() {
         let points = study
             .border_efforts()
@@ -40,21 +46,72 @@ fn of_voltage(voltage_v: Option<f64>, index: usize) -> &'static str {
     }
 }
 
-/// Names and classes of the two mixers, with how to get at their answers.
-type Mixer = (&'static str, &'static str, fn(&Row) -> &YawResponse);
-const MIXERS: [Mixer; 2] = [
-    ("coaxial mixer", "series-1", |row| &row.coaxial),
-    ("conventional mixer", "series-2", |row| &row.conventional),
-];
+/// Thrust or torque of every kind of single rotor over its throttle, with hover.
+pub fn rotors(rotors: &[Study<'_>], effort: Effort) -> Figure {
+    let k = effort as usize;
+    let throttles = |of: &Study<'_>| -> Vec<f64> {
+        (0..=40)
+            .map(|step| of.throttles([f64::from(step) / 40.0; 2])[0])
+            .collect()
+    };
+    let curve = |of: &Study<'_>| -> Vec<[f64; 2]> {
+        throttles(of)
+            .into_iter()
+            .map(|x| [x, of.pair.efforts([x; 2])[k]])
+            .collect()
+    };
+    let curves: Vec<Vec<[f64; 2]>> = rotors.iter().map(curve).collect();
+    let extent = |axis: usize| range(curves.iter().flatten().map(|point| point[axis]));
+    let title = format!("{} of a single rotor over its throttle", effort.name());
+    let y = widened(extent(1), 0.06);
+    let mut figure = Figure::new(title, ("throttle x", extent(0)), (effort.label(), y))
+        .high(200.0)
+        .reading_curves();
+    for (count, (of, curve)) in rotors.iter().zip(&curves).enumerate() {
+        let name = of.kind().map_or(effort.word(), |(_, name)| name);
+        figure.curve(&told_apart(count), name, curve);
+        let hover = of.hover_throttles().into_iter().zip(of.hover_efforts());
+        let hover: Vec<[f64; 2]> = hover.map(|([x, _], efforts)| [x, efforts[k]]).collect();
+        figure.mark(&hover, "hover");
+    }
+    figure
+}
+
+/// The class of one of up to nine curves: three colours, then three dashes.
+fn told_apart(count: usize) -> String {
+    let (colour, dash) = (1 + count % 3, ["", " long", " dash-dot"][count / 3 % 3]);
+    format!("series-{colour}{dash}")
+}
+
+/// Name and class of a mixer, with how to get at its answers.
+type Mixer = (String, &'static str, fn(&Row) -> &YawResponse);
+
+fn mixers(comparison: &Comparison) -> [Mixer; 2] {
+    let [own, conventional] = comparison.names.map(|name| format!("{name} mixer"));
+    [
+        (own, "series-1", |row| &row.coaxial),
+        (conventional, "series-2", |row| &row.conventional),
+    ]
+}
 
 /// Fig. 6: what every unit gives over the yaw range, in the plane of thrust and torque.
 pub fn yaw_plane(study: &Study<'_>, comparison: &Comparison) -> Figure {
+    let kinds = study.of_each();
     let title = "Yaw commands in the attainable set of each unit";
     let [thrust, torque] = EFFORTS;
     let quantities = [("", ""), ("unit", ""), ("yaw asked", "N m"), thrust, torque];
-    let mut figure = over_efforts(study, title, [1.0, 1.0]).reading("dots", &quantities);
-    figure.outline("border", "attainable set", &study.border_efforts());
-    for (name, class, answer) in MIXERS {
+    let mut figure = over_efforts(&kinds, title, [1.0, 1.0]).reading("dots", &quantities);
+    for (of, dash) in kinds
+        .iter()
+        .zip(["", " dashed", " dotted", " dash-dot"].into_iter().cycle())
+    {
+        let whose = of
+            .kind()
+            .map_or_else(String::new, |(_, name)| format!(" of \"{name}\""));
+        let class = format!("border{dash}");
+        figure.outline(&class, &format!("attainable set{whose}"), &of.border_efforts());
+    }
+    for (name, class, answer) in &mixers(comparison) {
         for unit in 0..comparison.share_n.len() {
             let points = comparison.rows.iter().map(|row| answer(row).efforts[unit]);
             figure.curve(&format!("{class} thin"), "", &points.collect::<Vec<_>>());
@@ -62,7 +119,7 @@ pub fn yaw_plane(study: &Study<'_>, comparison: &Comparison) -> Figure {
         for row in &comparison.rows {
             for (unit, &efforts) in answer(row).efforts.iter().enumerate() {
                 let values = [
-                    name.to_owned(),
+                    name.clone(),
                     unit.to_string(),
                     fixed(row.yaw_nm, 3),
                     fixed(efforts[0], 3),
@@ -88,8 +145,23 @@ fn over_yaw(
     Figure::new(title, ("yaw asked (N m)", asked), (label, values)).reading_curves()
 }
 
-/// The thrust of every unit over the yaw asked.
-pub fn yaw_thrust(comparison: &Comparison) -> Figure {
+/// The thrust of every unit over the yaw asked: of both mixers in one figure, of each in its own where more than three units
+/// differ.
+pub fn yaw_thrusts(comparison: &Comparison) -> Vec<Figure> {
+    let mixers = mixers(comparison);
+    match mixers
+        .iter()
+        .all(|mixer| distinct(comparison, mixer.2).len() <= 3)
+    {
+        true => vec![yaw_thrust(comparison, &mixers)],
+        false => mixers
+            .chunks(1)
+            .map(|mixer| yaw_thrust(comparison, mixer))
+            .collect(),
+    }
+}
+
+fn yaw_thrust(comparison: &Comparison, mixers: &[Mixer]) -> Figure {
     let efforts = |row: &'_ Row| {
         [&row.coaxial, &row.conventional]
             .map(|answer| answer.efforts.clone())
@@ -107,15 +179,18 @@ pub fn yaw_thrust(comparison: &Comparison) -> Figure {
         let each = if shares.len() == 1 { " of each" } else { "" };
         figure.level("reference", &format!("share of the thrust{each}"), share);
     }
-    for (name, class, answer) in MIXERS {
-        for (count, (curve, of)) in distinct(comparison, answer).into_iter().enumerate() {
+    for (name, class, answer) in mixers {
+        for (count, (curve, of)) in distinct(comparison, *answer).into_iter().enumerate() {
             // Six dashes that are told apart without colour too.
-            let dash = match class {
+            let dash = match *class {
                 "series-1" => ["", " long", " long-dot"],
                 _ => [" dotted", " dashed", " dash-dot"],
             }[count % 3];
-            let name = format!("{name}, {}", listed(&of));
-            figure.curve(&format!("{class}{dash}"), &name, &curve);
+            let class = match mixers {
+                [_] => told_apart(count),
+                _ => format!("{class}{dash}"),
+            };
+            figure.curve(&class, &format!("{name}, {}", listed(&of)), &curve);
         }
     }
     figure
@@ -174,7 +249,7 @@ fn of_both(
         let of = |row: &Row| [row.yaw_nm, value(row, answer(row))];
         comparison.rows.iter().map(of).collect()
     };
-    let curves = MIXERS.map(|(name, class, answer)| (name, class, curve(answer)));
+    let curves = mixers(comparison).map(|(name, class, answer)| (name, class, curve(answer)));
     let points = curves.iter().flat_map(|(_, _, curve)| curve);
     let values = points.map(|point| point[1]);
     let mut figure = over_yaw(comparison, title, label, values.chain([level]));
@@ -250,10 +325,12 @@ fn curve(levels: &[Level], value: impl Fn(&Level) -> f64) -> Vec<[f64; 2]> {
     levels.iter().map(|level| [level.at, value(level)]).collect()
 }
 
-/// Throttles in level flight against thrust at every voltage: of the upper (0) or of the lower (1)
-/// rotors.
-pub fn throttle(study: &Study<'_>, levels: &[(Option<f64>, Vec<Level>)], rotor: usize) -> Figure {
-    let name = ["upper", "lower"][rotor];
+/// Throttles in level flight against thrust at every voltage, of a layer of rotors by its place and its word.
+pub fn throttle(
+    study: &Study<'_>,
+    levels: &[(Option<f64>, Vec<Level>)],
+    (layer, name): (usize, &str),
+) -> Figure {
     let title = format!("Throttle of the {name} rotors in level flight against thrust");
     let label = format!("throttle of the {name} rotors");
     // The thrusts are the same at every voltage.
@@ -261,13 +338,13 @@ pub fn throttle(study: &Study<'_>, levels: &[(Option<f64>, Vec<Level>)], rotor: 
     let mut figure = over_thrust(study, &title, first, (&label, [0.0, 1.0]));
     for (index, (volts, all)) in levels.iter().enumerate() {
         let name = volts.map_or_else(|| "throttle".to_owned(), |volts| format!("{volts} V"));
-        let curve = curve(all, |level| level.throttles[rotor]);
+        let curve = curve(all, |level| level.throttles[layer]);
         figure.curve(of_voltage(*volts, index), &name, &curve);
     }
     figure
 }
 
-/// Throttles of both rotors in hover against voltage; `None` without a mass or an effect of
+/// Throttles of all layers of rotors in hover against voltage; `None` without a mass or an effect of
 /// voltage.
 pub fn hover_throttle(study: &Study<'_>, levels: &[Level]) -> Option<Figure> {
     let voltage = study.compiled.airframe.voltage.as_ref()?;
@@ -277,8 +354,9 @@ pub fn hover_throttle(study: &Study<'_>, levels: &[Level]) -> Option<Figure> {
     let mut figure = Figure::new(title, x, ("throttle in hover", [0.0, 1.0]))
         .high(200.0)
         .reading_curves();
-    for (rotor, name, class) in [(0, "upper rotors", "series-1"), (1, "lower rotors", "series-2")] {
-        figure.curve(class, name, &curve(levels, |level| level.throttles[rotor]));
+    for (place, (layer, _)) in study.compiled.airframe.layers().enumerate() {
+        let curve = curve(levels, |level| level.throttles[place]);
+        figure.curve(&told_apart(place), &format!("{layer} rotors"), &curve);
     }
     figure.mark_x(voltage.reference, "reference");
     Some(figure)
@@ -286,16 +364,8 @@ pub fn hover_throttle(study: &Study<'_>, levels: &[Level]) -> Option<Figure> {
 
 /// Electrical power in level flight against thrust; `None` where the file has no power map.
 pub fn power(study: &Study<'_>, levels: &[Level]) -> Option<Figure> {
-    if study
-        .compiled
-        .airframe
-        .pairs
-        .iter()
-        .any(|pair| pair.power.is_none())
-    {
-        return None;
-    }
     let curve = curve(levels, |level| level.power_w);
+    curve.iter().find(|point| point[1].is_finite())?;
     // The range is that of the finite ones.
     let powers = curve.iter().map(|point| point[1]);
     let powers = widened(range(powers.chain([0.0])), 0.04);

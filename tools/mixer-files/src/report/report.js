@@ -4,61 +4,66 @@ function report(root, model) {
   "use strict";
   const [low, high] = model.throttle;
 
-  // The pair's forward map and its Jacobian, in double precision.
-  function efforts(u, l) {
-    let f = 0, q = 0, fu = 0, fl = 0, qu = 0, ql = 0;
-    for (const [i, j, a, b] of model.terms) {
-      const m = Math.pow(u, i) * Math.pow(l, j);
-      const mu = i ? i * Math.pow(u, i - 1) * Math.pow(l, j) : 0;
-      const ml = j ? j * Math.pow(u, i) * Math.pow(l, j - 1) : 0;
-      f += a * m; q += b * m; fu += a * mu; fl += a * ml; qu += b * mu; ql += b * ml;
-    }
-    return { f, q, fu, fl, qu, ql };
-  }
-
-  // Throttles for (f, Q) by Newton's method within the box; null outside the attainable set.
-  function invert(f, q) {
-    const clamp = (x) => Math.min(high, Math.max(low, x));
-    let u = 0.5 * (low + high), l = u;
-    for (let step = 0; step < 60; step += 1) {
-      const e = efforts(u, l), det = e.fu * e.ql - e.fl * e.qu;
-      const df = f - e.f, dq = q - e.q;
-      if (Math.abs(df) < 1e-9 * model.scale[0] && Math.abs(dq) < 1e-9 * model.scale[1]) return [u, l];
-      u = clamp(u + (df * e.ql - dq * e.fl) / det);
-      l = clamp(l + (dq * e.fu - df * e.qu) / det);
-    }
-    return null;
-  }
-
   const digits = (x, n) => (x === 0 ? "0" : Number(x.toPrecision(n)).toString()).replace("-", "\u2212");
   const fixed = (x, n) => x.toFixed(n).replace(/^-(?=0\.?0*$)/, "").replace("-", "\u2212");
+  const plane = ([f, q]) => [fixed(f, 3), fixed(q, 4)];
 
-  // The value of a grid of thousandths of its largest value at the node next to (u, l).
-  function nearest(grid, u, l) {
-    const node = (x) => Math.round((x - low) / (high - low) * (grid.side - 1));
-    return grid.thousandths[node(l) * grid.side + node(u)] * grid.largest / 1000;
-  }
+  // What is read of a pair: its texts by kind of picture.
+  const pairs = model.pairs.map(({ terms, scale, errors }) => {
+    // The pair's forward map and its Jacobian, in double precision.
+    function efforts(u, l) {
+      let f = 0, q = 0, fu = 0, fl = 0, qu = 0, ql = 0;
+      for (const [i, j, a, b] of terms) {
+        const m = Math.pow(u, i) * Math.pow(l, j);
+        const mu = i ? i * Math.pow(u, i - 1) * Math.pow(l, j) : 0;
+        const ml = j ? j * Math.pow(u, i) * Math.pow(l, j - 1) : 0;
+        f += a * m; q += b * m; fu += a * mu; fl += a * ml; qu += b * mu; ql += b * ml;
+      }
+      return { f, q, fu, fl, qu, ql };
+    }
 
-  // Texts of the read-out at a place of a picture; what is missing is not attainable.
-  const kinds = {
-    plane: ([f, q]) => [fixed(f, 3), fixed(q, 4)],
-    forward([u, l]) {
-      const throttles = [fixed(u, 3), fixed(l, 3)];
-      if (u < low || u > high || l < low || l > high) return throttles;
-      const e = efforts(u, l);
-      return [...throttles, fixed(e.f, 3), fixed(e.q, 4)];
-    },
-    inverse([f, q]) {
-      const found = invert(f, q) || [];
-      return [...kinds.plane([f, q]), ...found.map((throttle) => fixed(throttle, 4))];
-    },
-    "error-thrust": (at) => error(at, model.errors[0]),
-    "error-torque": (at) => error(at, model.errors[1]),
-  };
-  function error(at, grid) {
-    const found = invert(...at);
-    return [...kinds.plane(at), ...(found ? [digits(nearest(grid, ...found), 2)] : [])];
-  }
+    // Throttles for (f, Q) by Newton's method within the box; null outside the attainable set.
+    function invert(f, q) {
+      const clamp = (x) => Math.min(high, Math.max(low, x));
+      let u = 0.5 * (low + high), l = u;
+      for (let step = 0; step < 60; step += 1) {
+        const e = efforts(u, l), det = e.fu * e.ql - e.fl * e.qu;
+        const df = f - e.f, dq = q - e.q;
+        if (Math.abs(df) < 1e-9 * scale[0] && Math.abs(dq) < 1e-9 * scale[1]) return [u, l];
+        u = clamp(u + (df * e.ql - dq * e.fl) / det);
+        l = clamp(l + (dq * e.fu - df * e.qu) / det);
+      }
+      return null;
+    }
+
+    // The value of a grid of thousandths of its largest value at the node next to (u, l).
+    function nearest(grid, u, l) {
+      const node = (x) => Math.round((x - low) / (high - low) * (grid.side - 1));
+      return grid.thousandths[node(l) * grid.side + node(u)] * grid.largest / 1000;
+    }
+
+    // Texts of the read-out at a place of a picture; what is missing is not attainable.
+    const kinds = {
+      plane,
+      forward([u, l]) {
+        const throttles = [fixed(u, 3), fixed(l, 3)];
+        if (u < low || u > high || l < low || l > high) return throttles;
+        const e = efforts(u, l);
+        return [...throttles, fixed(e.f, 3), fixed(e.q, 4)];
+      },
+      inverse([f, q]) {
+        const found = invert(f, q) || [];
+        return [...plane([f, q]), ...found.map((throttle) => fixed(throttle, 4))];
+      },
+      "error-thrust": (at) => error(at, errors[0]),
+      "error-torque": (at) => error(at, errors[1]),
+    };
+    function error(at, grid) {
+      const found = invert(...at);
+      return [...plane(at), ...(found ? [digits(nearest(grid, ...found), 2)] : [])];
+    }
+    return kinds;
+  });
 
   const clamp = (x, from, to) => Math.min(to, Math.max(from, x));
   const distance = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1]);
@@ -112,7 +117,7 @@ function report(root, model) {
         const dot = dots.reduce((a, b) => distance(b.at, cursor) < distance(a.at, cursor) ? b : a);
         [cursor, texts] = [dot.at, dot.texts];
       } else {
-        texts = kinds[kind]([toX(cursor[0]), toY(cursor[1])]);
+        texts = pairs[svg.closest("[data-pair]").dataset.pair][kind]([toX(cursor[0]), toY(cursor[1])]);
       }
       if (kind !== "curves") rings = [cursor];
       outputs.forEach((output, k) => { output.textContent = texts[k] ?? "\u2013"; });

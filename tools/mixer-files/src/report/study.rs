@@ -8,11 +8,11 @@ use mixer_rt::{Health, Wrench};
 use crate::report::number::round_half_digit;
 
 /// A compiled airframe with what its figures share.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Study<'a> {
     /// The airframe.
     pub compiled: &'a Compiled,
-    /// The kind of unit whose maps are drawn: where it stands among the airframe's pairs, 0 where no unit is one.
+    /// The kind of unit that is drawn: where it stands among the airframe's pairs, or past these among its single rotors.
     pub index: usize,
     /// Its forward map in f64.
     pub pair: PairMap,
@@ -88,15 +88,22 @@ impl<'a> Study<'a> {
         Ok(self)
     }
 
-    /// Whose maps are drawn, where units differ.
-    pub fn whose(&self) -> Option<String> {
-        let name = |pair: &Pair| format!("\"{}\"", pair.name);
-        let all: Vec<String> = self.compiled.airframe.pairs.iter().map(name).collect();
-        let own = all.get(self.index).filter(|_| all.len() > 1)?;
-        Some(format!(
-            "The maps of a pair are those of {own} among {}; `report --pair` draws another\u{2019}s.",
-            all.join(", ")
-        ))
+    /// The same study of each kind of unit; the flight is that of one.
+    pub fn of_each(&self) -> Vec<Study<'a>> {
+        let of = |index: usize| Study {
+            index,
+            pair: map_of(self.compiled, index),
+            flown: self.flown.clone().filter(|_| index == self.index),
+            ..*self
+        };
+        (0..self.compiled.airframe.views().count()).map(of).collect()
+    }
+
+    /// Word and name of the kind: `rotor`, `tail`; `None` where all units are alike.
+    pub fn kind(&self) -> Option<(&'static str, &'a str)> {
+        let airframe = &self.compiled.airframe;
+        let view = airframe.views().nth(self.index)?;
+        airframe.is_unlike().then(|| view.of.name())
     }
 
     /// The weight, N; `None` where the file has no mass, or the weight is not carried at the
@@ -169,7 +176,7 @@ impl<'a> Study<'a> {
     }
 
     /// The pair whose maps are drawn, and what is known of it; `None` where no unit is one.
-    pub fn of_pair(&self) -> Option<(&Pair, &OfPair)> {
+    pub fn of_pair(&self) -> Option<(&'a Pair, &'a OfPair)> {
         let pair = self.compiled.airframe.pairs.get(self.index)?;
         Some((pair, self.compiled.of_pairs.get(self.index)?))
     }

@@ -1,6 +1,7 @@
 //! Tables of the page: summary, units, M and M+, the static comparison, model against bench.
 
 use maud::{Markup, html};
+use mixer_compiler::airframe::Rotor;
 use mixer_compiler::diagnostic::printable;
 use mixer_facts::Fact;
 
@@ -32,7 +33,7 @@ pub fn facts<'a>(facts: impl Iterator<Item = &'a Fact>, more: &[(&str, String)])
     html! {
         table.facts {
             tbody {
-                @for fact in facts { tr { th scope="row" { (fact.name) } td { (said(fact)) } } }
+                @for fact in facts.filter(|fact| !fact.text().is_empty()) { tr { th scope="row" { (fact.name) } td { (said(fact)) } } }
                 @for (name, value) in more { tr { th scope="row" { (name) } td { (value) } } }
             }
         }
@@ -41,16 +42,25 @@ pub fn facts<'a>(facts: impl Iterator<Item = &'a Fact>, more: &[(&str, String)])
 
 /// Places, spins and outputs of the units.
 pub fn units(study: &Study<'_>) -> Markup {
-    let header = ["unit", "x (m)", "y (m)", "z (m)", "upper rotor", "lower rotor"];
-    let units = study.compiled.airframe.units.iter().enumerate();
+    let airframe = &study.compiled.airframe;
+    let layers = || airframe.layers().map(|(layer, _)| layer);
+    let header = ["unit", "x (m)", "y (m)", "z (m)"].map(str::to_owned).into_iter();
+    let header: Vec<String> = header
+        .chain(layers().map(|layer| format!("{layer} rotor")))
+        .collect();
+    let units = airframe.units.iter().enumerate();
     let rows: Vec<Vec<String>> = units
         .map(|(index, unit)| {
             let [x, y, z] = unit.position_m.map(|x| fixed(x, 4));
-            let rotors = unit.rotors();
-            let rotors = rotors.map(|rotor| format!("{}, output {}", rotor.spin.name(), rotor.channel));
-            let mut rotors = rotors.chain(std::iter::once("none".to_owned()));
-            let mut next = || rotors.next().unwrap_or_default();
-            vec![index.to_string(), x, y, z, next(), next()]
+            let rotor = |layer| {
+                let rotor = unit.rotors().find(|rotor| rotor.layer == layer);
+                let told = |rotor: Rotor| format!("{}, output {}", rotor.spin.name(), rotor.channel);
+                rotor.map_or_else(|| "none".to_owned(), told)
+            };
+            [index.to_string(), x, y, z]
+                .into_iter()
+                .chain(layers().map(rotor))
+                .collect()
         })
         .collect();
     let caption = "From the centre of gravity: x forward, y right, z down";
@@ -149,7 +159,11 @@ pub fn comparison(comparison: &Comparison) -> Markup {
     let shown = SHOWN_ROWS.min(count).max(2);
     let mut lines = Vec::new();
     for row in (0..shown).filter_map(|k| comparison.rows.get(k * count.saturating_sub(1) / (shown - 1))) {
-        for (name, answer) in [("coaxial", &row.coaxial), ("conventional", &row.conventional)] {
+        for (name, answer) in comparison
+            .names
+            .into_iter()
+            .zip([&row.coaxial, &row.conventional])
+        {
             let YawResponse { efforts, wrench, .. } = answer;
             let limited = if answer.within { "" } else { "*" };
             let mut cells = vec![fixed(row.yaw_nm, 3), format!("{name}{limited}")];
@@ -212,25 +226,46 @@ pub fn coefficients(study: &Study<'_>) -> Markup {
         return html! {};
     };
     let terms = pair.basis.exponents().iter();
-    let power = |letter: &str, exponent: u8| {
-        html! {
-            @if exponent > 0 { (letter) }
-            @if exponent > 1 { sup { (exponent) } }
-        }
-    };
-    let rows: Vec<Vec<Markup>> = terms
-        .zip(pair.thrust_n.iter().zip(&pair.torque_nm))
-        .map(|(&(i, j), (f, q))| {
-            let term = html! { (power("u", i)) (power("l", j)) };
-            vec![term, html! { (exact(*f)) }, html! { (exact(*q)) }]
-        })
-        .collect();
+    let terms = terms.map(|(i, j)| html! { (power("u", *i)) (power("l", *j)) });
     let caption = format!(
         "The pair\u{2019}s coefficients, {}; its upper rotor turned {} on the bench",
         pair.basis.name(),
         pair.upper_spin.name()
     );
-    table(&caption, &["term", "thrust f (N)", "torque Q (N m)"], &rows)
+    of_terms(&caption, terms, &pair.thrust_n, &pair.torque_nm)
+}
+
+/// The coefficients of single rotors, likewise.
+pub fn rotors(study: &Study<'_>) -> Markup {
+    html! {
+        @for rotor in &study.compiled.airframe.single_rotors {
+            (of_terms(
+                &format!("The coefficients of \u{201c}{}\u{201d} in its throttle x", printable(&rotor.name)),
+                (1..=3).map(|exponent| power("x", exponent)),
+                &rotor.alone.thrust_n,
+                &rotor.alone.torque_nm,
+            ))
+        }
+    }
+}
+
+fn power(letter: &str, exponent: u8) -> Markup {
+    html! {
+        @if exponent > 0 { (letter) }
+        @if exponent > 1 { sup { (exponent) } }
+    }
+}
+
+fn of_terms(
+    caption: &str,
+    terms: impl Iterator<Item = Markup>,
+    thrust_n: &[f64],
+    torque_nm: &[f64],
+) -> Markup {
+    let rows = terms.zip(thrust_n.iter().zip(torque_nm));
+    let rows = rows.map(|(term, (f, q))| vec![term, html! { (exact(*f)) }, html! { (exact(*q)) }]);
+    let rows: Vec<_> = rows.collect();
+    table(caption, &["term", "thrust f (N)", "torque Q (N m)"], &rows)
 }
 
 /// All digits, with a typographic minus.

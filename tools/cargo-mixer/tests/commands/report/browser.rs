@@ -115,9 +115,15 @@ fn open(browser: &Path, page: &Path) -> (String, Vec<String>) {
     (String::from_utf8_lossy(&output.stdout).into_owned(), messages)
 }
 
-/// One unit, four and six, with a mass and power and without.
+/// One unit, four and six, with a mass and power and without, and two pairs.
 fn shown() -> Vec<Compiled> {
-    let names = ["single-pair", "isae-x8", "px4-x12", "x8-11in-least-power"];
+    let names = [
+        "single-pair",
+        "isae-x8",
+        "px4-x12",
+        "x8-11in-least-power",
+        "x8-22-16in",
+    ];
     names
         .map(|name| compiled(&root().join(format!("airframes/{name}.toml"))))
         .into()

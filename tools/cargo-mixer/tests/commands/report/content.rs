@@ -151,15 +151,17 @@ fn figures_have_data_and_are_reached_by_keyboard() {
                 link.attribute("download").unwrap()
             })
             .collect();
-        let [forward, inverse, error] =
-            ["forward", "inverse", "error"].map(|word| format!("{name}-{word}.csv"));
-        assert_eq!(
-            of_all,
-            [
-                &forward, &forward, &forward, &forward, &inverse, &inverse, &error, &error
-            ],
-            "{name}"
-        );
+        let pairs = &compiled.airframe.pairs;
+        let file = |word: &str, of: usize| match pairs.len() {
+            1 => format!("{name}-{word}.csv"),
+            _ => format!("{name}-{word}-{}.csv", pairs[of].name),
+        };
+        let maps = [("forward", 4), ("inverse", 2), ("error", 2)].into_iter();
+        let maps = maps.flat_map(|(word, count)| (0..pairs.len()).map(move |of| (word, of, count)));
+        let expected: Vec<String> = maps
+            .flat_map(|(word, of, count)| vec![file(word, of); count])
+            .collect();
+        assert_eq!(of_all, expected, "{name}");
         let mut files = BTreeSet::new();
         for link in document.descendants().filter(is_link) {
             let file = link.attribute("download").unwrap();
@@ -198,9 +200,99 @@ fn figures_have_data_and_are_reached_by_keyboard() {
             assert!(outputs >= 2, "{name}: {outputs}");
         }
         // Maps and the attainable set have what the command writes.
-        for data in [Data::Attainable, Data::Forward, Data::Inverse, Data::Error] {
-            let csv = sweep(&study, data).unwrap();
-            assert!(page.contains(&csv.replace('\n', "%0A")), "{name}: {data:?}");
+        for of in study.of_each().iter().filter(|of| of.of_pair().is_some()) {
+            for data in [Data::Attainable, Data::Forward, Data::Inverse, Data::Error] {
+                let csv = sweep(of, data).unwrap();
+                assert!(page.contains(&csv.replace('\n', "%0A")), "{name}: {data:?}");
+            }
+        }
+    }
+}
+
+/// Named curves of a section, each with its class, by figure.
+fn curves<'d>(document: &'d Document<'_>, id: &str) -> Vec<Vec<(&'d str, &'d str)>> {
+    let figures = named(section(document, id), "figure");
+    let of = |figure: Node<'_, 'd>| -> Vec<(&str, &str)> {
+        let all = figure.descendants();
+        all.filter_map(|node| Some((node.attribute("data-name")?, node.attribute("class")?)))
+            .collect()
+    };
+    figures.map(of).collect()
+}
+
+/// Of a frame of single rotors the page has their curves with hover, and no word of a pair.
+#[test]
+fn a_quad_has_its_rotors_curve_and_no_pair() {
+    let compiled = compile_text(&quad());
+    let study = Study::new(&compiled, None);
+    let page = page(&study, None, None);
+    let document = parsed(&page);
+    let main = named(document.root(), "main").next().unwrap();
+    let text = text_of(main).to_lowercase();
+    for word in ["upper", "lower rotor", "pair", "coaxial", "wake"] {
+        assert!(!text.contains(word), "{word}: {text}");
+    }
+    assert!(
+        text.contains("an isolated rotor has the curve of the file"),
+        "{text}"
+    );
+    let names: Vec<Vec<&str>> = curves(&document, "rotors")
+        .into_iter()
+        .map(|curves| curves.into_iter().map(|(name, _)| name).collect())
+        .collect();
+    assert_eq!(names, [["front"], ["front"]]);
+    let marks = section(&document, "rotors").descendants();
+    let marks = marks.filter(|node| node.attribute("class") == Some("mark-point"));
+    assert_eq!(marks.count(), 2, "all rotors hover alike");
+    for data in [Data::Attainable, Data::Forward, Data::Inverse, Data::Error] {
+        assert!(
+            sweep(&study, data)
+                .unwrap_err()
+                .contains("no unit of quad is a pair")
+        );
+    }
+    for (data, header) in [
+        (Data::Layout, "unit,x_m,y_m,z_m,single_spin,single_channel\n"),
+        (Data::Level, "voltage_v,thrust_n,single_throttle,power_w\n"),
+        (Data::Hover, "voltage_v,single_throttle\n"),
+    ] {
+        assert!(sweep(&study, data).unwrap().starts_with(header), "{data:?}");
+    }
+}
+
+/// Kinds of units are drawn each, and curves of units that differ are told apart.
+#[test]
+fn every_kind_is_drawn() {
+    for compiled in airframes() {
+        let name = &compiled.airframe.name;
+        let page = page(&Study::new(&compiled, None), None, None);
+        let document = parsed(&page);
+        for figure in curves(&document, "comparison") {
+            let drawn = figure.iter().filter(|(_, class)| class.contains("series"));
+            let classes: Vec<&str> = drawn.map(|(_, class)| *class).collect();
+            let distinct: BTreeSet<&&str> = classes.iter().collect();
+            assert_eq!(distinct.len(), classes.len(), "{name}: {figure:?}");
+        }
+        let titles: Vec<String> = named(section(&document, "forward"), "h3").map(text_of).collect();
+        let pairs = compiled.airframe.pairs.iter();
+        let pairs: Vec<String> = pairs
+            .map(|pair| format!("\u{201c}{}\u{201d}", pair.name))
+            .collect();
+        assert!(
+            titles == pairs || titles.is_empty() && pairs.len() == 1,
+            "{name}: {titles:?}"
+        );
+        if !compiled.airframe.single_rotors.is_empty() {
+            for figure in curves(&document, "rotors") {
+                let names = figure.iter().map(|(name, _)| *name);
+                let kinds = compiled
+                    .airframe
+                    .single_rotors
+                    .iter()
+                    .map(|rotor| rotor.name.as_str());
+                assert!(names.eq(kinds), "{name}: {figure:?}");
+            }
+            assert!(page.contains("a single one too"), "{name}");
         }
     }
 }

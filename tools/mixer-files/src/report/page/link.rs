@@ -30,13 +30,27 @@ pub(super) fn sweep_of_all(study: &Study<'_>, of: Data) -> Markup {
 }
 
 fn swept(study: &Study<'_>, of: Data, text: &str) -> Markup {
-    html! { @if let Ok(csv) = data::sweep(study, of) { (link(study, of.word(), &csv, text)) } }
+    let word = if of.is_of_pair() {
+        whose(study, of.word())
+    } else {
+        of.word().to_owned()
+    };
+    html! { @if let Ok(csv) = data::sweep(study, of) { (link(study, &word, &csv, text)) } }
 }
 
 /// What was measured of one effort at the bench points, and what the model has.
 pub(super) fn bench(study: &Study<'_>, bench: &BenchPoints, effort: Effort) -> Markup {
-    let word = format!("bench-{}", effort.word());
+    let word = whose(study, &format!("bench-{}", effort.word()));
     link(study, &word, &data::bench(bench, effort), OF_THE_FIGURE)
+}
+
+/// A word with the name of the pair, where there are several.
+fn whose(study: &Study<'_>, word: &str) -> String {
+    let name = study.kind().filter(|_| study.compiled.airframe.pairs.len() > 1);
+    name.map_or_else(
+        || word.to_owned(),
+        |(_, name)| format!("{word}-{}", printable(name)),
+    )
 }
 
 fn link(study: &Study<'_>, word: &str, csv: &str, text: &str) -> Markup {

@@ -64,7 +64,7 @@ fn settings(compiled: &Compiled, _: &Options, all: &mut Parameters) {
     } else {
         all.note(NO_VOLTAGE);
     }
-    all.because("The rotors of a pair would slew apart.")
+    all.because("Rotors would slew apart from one another.")
         .real("MOT_SLEW_UP_TIME", 0.0)
         .real("MOT_SLEW_DN_TIME", 0.0);
     if airframe.air.is_some() {
@@ -90,7 +90,7 @@ fn settings(compiled: &Compiled, _: &Options, all: &mut Parameters) {
 /// ArduPilot's parameters where its own mixer puts out the throttles.
 fn own(compiled: &Compiled, _: &Options, all: &mut Parameters) {
     let expo = hundredths(curve(compiled, true));
-    all.because("Fitted to the thrust of the pair with both rotors alike.")
+    all.because("Fitted to the thrust of all rotors at one throttle.")
         .real("MOT_THST_EXPO", expo);
     spin(compiled, all);
     if let Some(voltage) = &compiled.airframe.voltage {
@@ -119,6 +119,10 @@ fn geometry(compiled: &Compiled, options: &Options, all: &mut Parameters) -> Res
         return Ok(());
     }
     let Some((class, kind, name)) = frames::find(compiled) else {
+        if compiled.airframe.pairs.is_empty() {
+            all.note("FRAME_CLASS and FRAME_TYPE are not written: ArduPilot's frames without a pair are not looked for");
+            return Ok(());
+        }
         all.note(
             "no FRAME_CLASS has these rotors on these outputs: ArduPilot has X and plus frames of 4 and 6 pairs, Y6 and Y4; of \
              those `cargo mixer new --outputs ardupilot` writes an airframe whose `channels` and spins are one's",
@@ -173,7 +177,7 @@ fn hover_throttle(hover: Option<f64>, why: &str, all: &mut Parameters) {
 fn gains(compiled: &Compiled) -> String {
     let Some(slope) = compiled.slope_in_hover() else {
         return "ATC_RAT_RLL_*, _PIT_*, _YAW_*: which factor keeps the loop gain is known with `[vehicle] mass_kg` in the \
-                airframe file; one unit of yaw is then the pair's slope in hover"
+                airframe file; one unit of yaw is then the slope in hover"
             .to_owned();
     };
     let voltage = match &compiled.airframe.voltage {

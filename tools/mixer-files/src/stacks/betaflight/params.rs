@@ -92,7 +92,7 @@ fn settings(compiled: &Compiled, _: &Options, all: &mut Parameters) {
     );
     all.because("The largest throttle is the mixer's, throttle.max.")
         .whole("motor_output_limit", 100);
-    all.because("A rotor of a pair that is held at a speed of its own is none of the map's.")
+    all.because("A rotor that is held at a speed of its own is none of the model's.")
         .whole("dyn_idle_min_rpm", 0)
         .line("set rpm_limit = OFF");
     match compiled.airframe.allocation.airmode {
@@ -123,11 +123,11 @@ fn settings(compiled: &Compiled, _: &Options, all: &mut Parameters) {
 /// Where Betaflight's own mixer puts out the throttles.
 fn own(compiled: &Compiled, _: &Options, all: &mut Parameters) {
     let curve = (100.0 * curve(compiled, true)).round() as i32;
-    all.because("Fitted to the thrust of the pair with both rotors alike, in percent as MOT_THST_EXPO.")
+    all.because("Fitted to the thrust of all rotors at one throttle, in percent as MOT_THST_EXPO.")
         .whole("thrust_linear", curve);
     if compiled.airframe.throttle.min > MOST_IDLE {
         all.note(format!(
-            "throttle.min is {:?}, and Betaflight's motor_idle {MOST_IDLE} at most: its own mixer idles below the pair's map",
+            "throttle.min is {:?}, and Betaflight's motor_idle {MOST_IDLE} at most: its own mixer idles below the airframe's range",
             compiled.airframe.throttle.min
         ));
     }

@@ -92,7 +92,7 @@ const MIDDLE: &str = "Throttle stick in the middle is hover thrust.";
 /// PX4's parameters where its own allocator puts out the throttles.
 fn own(compiled: &Compiled, options: &Options, all: &mut Parameters) {
     let factor = hundredths(curve(compiled, false));
-    all.because("Fitted to the thrust of the pair with both rotors alike.")
+    all.because("Fitted to the thrust of all rotors at one throttle.")
         .real("THR_MDL_FAC", factor);
     let throttle = compiled.equal_hover_throttle();
     let hover = throttle.map(|throttle| on_curve(factor, throttle));
@@ -176,10 +176,13 @@ fn failure_detection(compiled: &Compiled, options: &Options, all: &mut Parameter
     let Some([slope, offset]) = current_tangent(compiled) else {
         all.because("Without the motors' currents a healthy motor would be found out.")
             .whole("FD_ACT_EN", 0);
-        all.note(
-            "FD_ACT_EN is off: `[pair.power]`, `[voltage]` and `[vehicle] mass_kg` of the airframe file would give \
-             FD_ACT_MOT_C2T and FD_ACT_LOW_OFF",
-        );
+        all.note(match compiled.airframe.single_units() {
+            0 => {
+                "FD_ACT_EN is off: `[pair.power]`, `[voltage]` and `[vehicle] mass_kg` of the airframe file would give \
+                 FD_ACT_MOT_C2T and FD_ACT_LOW_OFF"
+            }
+            _ => "FD_ACT_EN is off: the currents of single rotors are not known",
+        });
         return;
     };
     let why = "Half of the tangent to a motor's current over its throttle in hover, from [pair.power]; needs ESCs that \
@@ -217,7 +220,7 @@ fn gains(compiled: &Compiled) -> String {
              with THR_MDL_FAC 0 are multiplied by {factor:.3}, the slope of thrust over throttle in hover"
         ),
         None => "MC_ROLLRATE_K, MC_PITCHRATE_K, MC_YAWRATE_K: which factor keeps the loop gain is known with `[vehicle] \
-                 mass_kg` in the airframe file; one unit of yaw is then the pair's slope in hover"
+                 mass_kg` in the airframe file; one unit of yaw is then the slope in hover"
             .to_owned(),
     }
 }
