@@ -54,10 +54,7 @@ pub(crate) fn module(compiled: &Compiled) -> TokenStream {
             " Number of coaxial units.",
             " Number of output channels, two per unit.",
         ],
-        _ => [
-            " Number of units, pairs and single rotors.",
-            " Number of output channels, one per rotor.",
-        ],
+        _ => [" Number of units.", " Number of output channels, one per rotor."],
     };
     let format = mixer_rt::tables::FORMAT;
     let ardupilot_doc = doc(&[match &compiled.airframe.voltage {
@@ -191,7 +188,7 @@ fn module_lines(compiled: &Compiled) -> Vec<String> {
     let airframe = &compiled.airframe;
     let mut lines = Vec::new();
     lines.push(if airframe.description.is_empty() {
-        format!(" Coaxial mixer of `{}`.", airframe.name)
+        format!(" Mixer of `{}`.", airframe.name)
     } else {
         format!(" {}.", airframe.description.trim_end_matches('.'))
     });

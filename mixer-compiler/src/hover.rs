@@ -74,7 +74,7 @@ fn by_layer<S: Serializer>(layers: &[Layer], serializer: S) -> Result<S::Ok, S::
 }
 
 /// Hover at one voltage.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct HoverAt {
     /// The voltage, V.
     pub voltage_v: Option<f64>,
@@ -280,10 +280,7 @@ impl HoverAt {
         let Some(throttles) = mix([0.0, 0.0, 0.0, weight_n]) else {
             return HoverAt {
                 voltage_v,
-                layers: Vec::new(),
-                throttle_band: None,
-                margins: Vec::new(),
-                rotor_out: Vec::new(),
+                ..HoverAt::default()
             };
         };
         let layers = |throttles: &[f32]| -> Vec<Layer> {

@@ -45,7 +45,7 @@ impl Layout {
         let axes = [Vector3::x(), Vector3::y()].into_iter().zip(served);
         let free: Vec<_> = axes.filter(|(_, served)| !served).map(|(axis, _)| axis).collect();
         if airframe.is_unlike() {
-            return Err("units have different pairs");
+            return Err("units are not all of one pair");
         }
         if !effectiveness.is_vertical() {
             return Err("thrust axes are tilted");

@@ -143,10 +143,7 @@ pub(super) fn isolated() -> Result<String, String> {
     let compiled = golden::compile(PAPER)?;
     let study = Study::new(&compiled, None);
     let conventional = IsolatedTables::new(&compiled);
-    let given = |throttles: Vec<[f64; 2]>| {
-        let efforts: Vec<[f64; 2]> = throttles.iter().map(|&pair| study.pair.efforts(pair)).collect();
-        study.wrench(&efforts)
-    };
+    let given = |throttles: Vec<f32>| study.wrench(&study.efforts_of(&study.by_unit(&throttles)));
     let requests = [
         [0.0, 0.0, 0.0, 31.4],
         [0.0, 0.0, 0.3, 31.4],

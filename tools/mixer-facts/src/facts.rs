@@ -300,14 +300,8 @@ fn hover(list: &mut List, compiled: &Compiled) {
                 let name = if at.layers.len() > 1 { of.layer } else { "" };
                 format!("{least:.3} to {most:.3} {name}").trim_end().to_owned()
             });
-            let mut tables = vec!["[pair.uncertainty]", "[rotor.uncertainty]"];
-            let airframe = &compiled.airframe;
-            tables.retain(|table| match table.starts_with("[pair") {
-                true => !airframe.pairs.is_empty(),
-                false => !airframe.single_rotors.is_empty(),
-            });
             let ends: Vec<String> = ends.collect();
-            format!("; by {} {}", tables.join(" and "), ends.join(", "))
+            format!("; by the model's uncertainty {}", ends.join(", "))
         });
         let throttles = at.layers.iter().map(|of| layer(of.throttle, of.outputs));
         let throttle = throttles.collect::<Vec<_>>().join(", ");
@@ -377,7 +371,9 @@ fn power(list: &mut List, compiled: &Compiled) {
         format!(" of thrust, where torques start; {share:.0} % of a pair's saving is left to this frame")
     });
     let power = LevelPower::new(compiled);
-    list.say("power bias", format!("{bias:?}"), "N m per N", words)
+    // Where no unit is a pair there is none.
+    let value = or_nothing(airframe.pairs.first(), |_| format!("{bias:?}"));
+    list.say("power bias", value, "N m per N", words)
         .json("power_bias_nm_per_n", bias)
         .json("power", power);
     let Some(power) = power else { return };
@@ -700,6 +696,7 @@ fn costs(list: &mut List, compiled: &Compiled) {
     let any = format!(" at most, desaturation {desaturation}: the sum of what the code does at most");
     let (count, words) = match cost.inverse_instructions {
         Some(count) => (count.to_string(), words),
+        None if compiled.of_pairs.is_empty() => Default::default(),
         None => (String::new(), format!("not counted{words}")),
     };
     list.say("inverse of a unit", count, INSTRUCTIONS, words)

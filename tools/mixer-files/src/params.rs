@@ -48,12 +48,8 @@ pub fn params(compiled: &Compiled, file: &str, options: &Options) -> Result<Para
                 format!("param set-default {} {}", parameter.name, parameter.value)
             });
             let name = &compiled.airframe.name;
-            let kind = match compiled.airframe.pairs.is_empty() {
-                true => "Multirotor",
-                false => "Coaxial multirotor",
-            };
             format!(
-                "#!/bin/sh\n#\n# @name {name}\n#\n# @type {kind}\n#\n{head}\n. ${{R}}etc/init.d/rc.mc_defaults\n\n\
+                "#!/bin/sh\n#\n# @name {name}\n#\n# @type Multirotor\n#\n{head}\n. ${{R}}etc/init.d/rc.mc_defaults\n\n\
                  {defaults}"
             )
         }

@@ -2,9 +2,8 @@
 //! units' efforts out, beside those of a mixer that takes the rotors for isolated.
 
 use cargo_mixer::rows;
-use mixer_compiler::airframe::{Airmode, Axis, Correction, Kind, Unit};
-use mixer_compiler::model::{PairMap, scales};
-use mixer_compiler::view::View;
+use mixer_compiler::airframe::{Airmode, Axis, Correction, Unit};
+use mixer_compiler::model::scales;
 use mixer_facts::checklist::Checklist;
 use mixer_files::report::study::Study;
 use mixer_rt::{Conditions, Wrench};
@@ -12,15 +11,12 @@ use serde::Serialize;
 
 use crate::desk::Checked;
 
-/// Points of the drawn border of an attainable set.
-const BORDER: usize = 96;
-
 /// What is drawn of an airframe, and how far its sliders go.
 #[derive(Debug, Serialize)]
 pub struct Scene {
     /// The units in the order of the file.
     pub units: Vec<Drawn>,
-    /// Border of a unit's attainable set `[N, N m]` at the reference voltage and density;
+    /// Border of the attainable set of each kind of unit `[N, N m]` at the reference voltage and density;
     /// [`Mixed::factors`] bring it to others.
     pub borders: Vec<Vec<[f64; 2]>>,
     /// Ends of the border at the highest voltage and density, `[[low, high] of N, of N m]`.
@@ -60,11 +56,8 @@ pub struct Drawn {
 pub fn scene(checked: &Checked) -> Scene {
     let compiled = &checked.compiled;
     let airframe = &compiled.airframe;
-    let border = |view: View<'_, Kind<'_>>| -> Vec<[f64; 2]> {
-        let map = PairMap::of_kind(view.of, &airframe.throttle);
-        map.border(BORDER).into_iter().map(|t| map.efforts(t)).collect()
-    };
-    let borders: Vec<Vec<[f64; 2]>> = airframe.views().map(border).collect();
+    let study = Study::new(compiled, None);
+    let borders: Vec<Vec<[f64; 2]>> = study.of_each().iter().map(Study::border_efforts).collect();
     let mut extent = [[0.0, 0.0]; 2];
     let [top_v, top_density] =
         [&airframe.voltage, &airframe.air].map(|of| of.as_ref().map_or(0.0, |of| of.range[1]));
@@ -98,7 +91,7 @@ pub fn scene(checked: &Checked) -> Scene {
         borders,
         box_n_nm: extent,
         largest,
-        hover_n: Study::new(compiled, None).thrust_n,
+        hover_n: study.thrust_n,
         volts: airframe.voltage.as_ref().map(of),
         density: airframe.air.as_ref().map(of),
         mass_kg: airframe.vehicle.as_ref().map(|vehicle| vehicle.mass_kg),

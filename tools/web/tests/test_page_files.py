@@ -18,6 +18,13 @@ WARNINGS = ROOT / "mixer-compiler/tests/warnings"
 FEW = ("few.csv", b"upper,lower,thrust_n,torque_nm\n.6,.6,14,-0.02\n.95,.4,17.5,-0.27\n.4,.95,21,0.22\n.95,.95,30,-0.03\n")
 CASES = ROOT / "tools/cargo-mixer/tests/cases/files"
 
+# A quadcopter of the single rotors of y4.
+_, ROTOR_OF_Y4 = (ROOT / "airframes/y4.toml").read_text().split("\n[[rotor]]\n")
+QUAD = 'name = "quad"\n[throttle]\nmin = 0.2\nmax = 0.95\n[[rotor]]\n' + ROTOR_OF_Y4.split("[[unit]]")[0] + "".join(
+    f'[[unit]]\nposition_m = [{x}, {y}, 0.0]\nupper_spin = "{spin}"\nrotor = "front"\nchannels = [{channel}]\n'
+    for channel, (x, y, spin) in enumerate([(0.3, 0.3, "ccw"), (-0.3, -0.3, "ccw"), (0.3, -0.3, "cw"), (-0.3, 0.3, "cw")])
+) + "[vehicle]\nmass_kg = 4.2\n"
+
 
 def parameters(desk):
     desk.shell(f"cargo mixer params {X8} --stack px4 --own -o x8.params")
@@ -62,6 +69,43 @@ def test_an_airframe_file_stays_as_it_is(desk):
     desk.drop(X8).compiles("isae-x8")
     assert desk.save("airframe") == ("isae-x8.toml", X8.read_bytes())
     assert words(desk.opened("#verdict").inner_text()) == words(desk.shell("cargo mixer check isae-x8.toml").split("\nnext ")[0])
+
+
+@pytest.mark.parametrize("name, rotors", [("y4", "4 in 1 coaxial unit and 2 single ones"), ("hexa-stacked", "8 in 2 coaxial units and 4 single ones"), ("quad", "4, all single")])
+def test_single_rotors_are_shown_kept_and_saved(desk, name, rotors):
+    path = ROOT / f"airframes/{name}.toml"
+    content = (QUAD if name == "quad" else path.read_text()).encode()
+    desk.drop((path.name, content))
+    for _ in range(2):
+        desk.compiles(name)
+        assert desk.see("#frame option:checked").text_content() == f"of the file: {rotors}"
+        expect(desk.see("#rings")).to_be_visible(visible=name != "quad")
+        expect(desk.see("#report #rotors svg").first).to_be_visible()
+        assert desk.see("#report #forward").count() == (name != "quad")
+        throttle = desk.see("#numbers dd b").first.text_content()
+        assert ("single" in throttle) == (name != "quad") and "%" in throttle
+        desk.page.reload()
+    assert desk.compiles(name).save("airframe") == (path.name, content)
+    desk.page.select_option("#frame", "y6")
+    desk.page.fill("#arm", "0.4")
+    desk.settled()
+    assert desk.see("#frame").input_value() == "y6"
+    expect(desk.see("#replace")).to_be_visible()
+
+
+def test_two_pairs_make_one_frame(desk):
+    desk.page.fill("#arm", "0.45")
+    desk.drop(BENCH, ("other.csv", BENCH.read_bytes())).shows("#read", "are read as benches of one pair")
+    desk.page.get_by_label("Remove sweep.csv").click()
+    desk.page.get_by_label("Remove other.csv").click()
+    desk.shell(f"cargo mixer identify {BENCH} -o front.toml && cargo mixer identify {BENCH} --basis cubic -o rear.toml")
+    for name in ["front.toml", "rear.toml"]:
+        desk.drop((name, desk.file(name)))
+    desk.shows("#command", "--pair front=front.toml --pair rear=rear.toml").compiles("my-x8")
+    desk.run_shown()
+    name, content = desk.save("airframe")
+    assert content == desk.file(name)
+    assert content.count(b"[[pair]]") == 2
 
 
 def test_options_are_those_of_the_command_line(desk):

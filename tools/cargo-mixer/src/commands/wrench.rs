@@ -13,7 +13,7 @@ use crate::rows::{self, Row, RowArgs, Task, fields, throttles};
 ///
 /// In:  a header and rows of throttle_0.., one for each output, and, if there are such, voltage_v
 ///      and density_kg_m3, in any order. Without them the bench's voltage and density are taken.
-/// Out: roll_nm, pitch_nm, yaw_nm, thrust_n by the pair's polynomials and the laws of voltage and
+/// Out: roll_nm, pitch_nm, yaw_nm, thrust_n by the units' polynomials and the laws of voltage and
 ///      density. Numbers read back to the same bits (f64).
 ///      A rotor that is out stands still, whatever its throttle.
 ///

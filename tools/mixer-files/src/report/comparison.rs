@@ -7,6 +7,7 @@ use mixer_rt::Wrench;
 
 use crate::report::authority;
 use crate::report::study::Study;
+use crate::report::table::rounded;
 use isolated_rotors::IsolatedTables;
 
 /// What one mixer makes of one yaw command.
@@ -50,14 +51,6 @@ pub struct Comparison {
 }
 
 impl Comparison {
-    /// The compiled mixer in a sentence.
-    pub fn own(&self) -> String {
-        match self.names[0] {
-            "this" => "this mixer".to_owned(),
-            name => format!("the {name} mixer"),
-        }
-    }
-
     /// `count` yaw commands from the least to the largest that the compiled mixer delivers at the
     /// study's thrust; `None` where the airframe does not serve yaw, or the thrust leaves no room
     /// for any.
@@ -97,23 +90,42 @@ impl Comparison {
     }
 }
 
-/// Throttles `[u, l]` of every unit by the conventional mixer at the reference voltage, and whether
+impl Comparison {
+    /// Units by what both mixers make of them: those that always give the same as one another, to the digits of the table,
+    /// share their columns and curves.
+    pub(super) fn alike(&self) -> Vec<Vec<usize>> {
+        let same = |a: usize, b: usize| {
+            self.rows.iter().all(|row| {
+                [&row.coaxial, &row.conventional].into_iter().all(|answer| {
+                    let [a, b] = [answer.efforts[a], answer.efforts[b]].map(rounded);
+                    a == b
+                })
+            })
+        };
+        let mut groups: Vec<Vec<usize>> = Vec::new();
+        for unit in 0..self.share_n.len() {
+            match groups.iter_mut().find(|group| same(group[0], unit)) {
+                Some(group) => group.push(unit),
+                None => groups.push(vec![unit]),
+            }
+        }
+        groups
+    }
+}
+
+/// Throttles by output of the conventional mixer at the reference voltage, and whether
 /// none was limited.
-pub fn throttles(
-    study: &Study<'_>,
-    conventional: &IsolatedTables,
-    wrench: [f64; 4],
-) -> (Vec<[f64; 2]>, bool) {
+pub fn throttles(study: &Study<'_>, conventional: &IsolatedTables, wrench: [f64; 4]) -> (Vec<f32>, bool) {
     let reference_v = study.compiled.airframe.reference_v() as f32;
     let setpoint = Wrench::from_array(wrench.map(|x| x as f32));
     // A study's wrenches are finite.
-    let (channels, within) = conventional
+    conventional
         .conventional(&setpoint, reference_v)
-        .unwrap_or_default();
-    (study.by_unit(&channels), within)
+        .unwrap_or_default()
 }
 
-fn answer(study: &Study<'_>, (throttles, within): (Vec<[f64; 2]>, bool)) -> YawResponse {
+fn answer(study: &Study<'_>, (channels, within): (Vec<f32>, bool)) -> YawResponse {
+    let throttles = study.by_unit(&channels);
     let efforts: Vec<[f64; 2]> = study.efforts_of(&throttles);
     YawResponse {
         wrench: study.wrench(&efforts),

@@ -99,7 +99,7 @@ pub fn sweep(study: &Study<'_>, figure: Data) -> Result<String, String> {
     Ok(lines.join("\n") + "\n")
 }
 
-fn no_yaw(study: &Study<'_>) -> String {
+pub(crate) fn no_yaw(study: &Study<'_>) -> String {
     let name = &study.compiled.airframe.name;
     if study.serves(Axis::Yaw) {
         let ([floor, ceiling], thrust_n) = (study.compiled.thrust_range_n, study.thrust_n);
@@ -145,33 +145,34 @@ fn yaw(study: &Study<'_>, comparison: &Comparison) -> Vec<String> {
 }
 
 fn layout(study: &Study<'_>) -> Vec<String> {
-    let airframe = &study.compiled.airframe;
-    let columns = |end: &str| per_layer(study, |layer, _| format!(",{layer}_{end}"));
-    let mut lines = vec![format!(
-        "unit,x_m,y_m,z_m{}{}",
-        columns("spin"),
-        columns("channel")
-    )];
-    for (index, unit) in airframe.units.iter().enumerate() {
-        let of = |text: &dyn Fn(Rotor) -> String| {
-            per_layer(study, |layer, _| {
-                let rotor = unit.rotors().find(|rotor| rotor.layer == layer);
-                format!(",{}", rotor.map_or_else(String::new, text))
-            })
+    let mut lines = vec!["unit,x_m,y_m,z_m,layer,spin,channel".to_owned()];
+    for (index, unit) in study.compiled.airframe.units.iter().enumerate() {
+        let place = line(unit.position_m);
+        let of = |rotor: Rotor| {
+            format!(
+                "{index},{place},{},{},{}",
+                rotor.layer,
+                rotor.spin.name(),
+                rotor.channel
+            )
         };
-        let (spins, channels) = (
-            of(&|rotor| rotor.spin.name().to_owned()),
-            of(&|rotor| rotor.channel.to_string()),
-        );
-        lines.push(format!("{index},{}{spins}{channels}", line(unit.position_m)));
+        lines.extend(unit.rotors().map(of));
     }
     lines
 }
 
-/// A text for each layer of rotors, by its word and its place.
-fn per_layer(study: &Study<'_>, text: impl Fn(&str, usize) -> String) -> String {
-    let layers = study.compiled.airframe.layers().enumerate();
-    layers.map(|(place, (layer, _))| text(layer, place)).collect()
+/// Columns of the layers' throttles.
+fn throttles(study: &Study<'_>) -> String {
+    let layers = study.compiled.airframe.layers();
+    layers.map(|(layer, _)| format!(",{layer}_throttle")).collect()
+}
+
+/// Their cells.
+fn cells(level: &level::Level) -> String {
+    let throttles = level.throttles.iter();
+    throttles
+        .map(|throttle| format!(",{}", or_empty(*throttle)))
+        .collect()
 }
 
 /// A number, or nothing where there is none.
@@ -180,13 +181,12 @@ fn or_empty(x: f64) -> String {
 }
 
 fn level_lines(study: &Study<'_>) -> Vec<String> {
-    let throttles = per_layer(study, |layer, _| format!(",{layer}_throttle"));
-    let mut lines = vec![format!("voltage_v,thrust_n{throttles},power_w")];
+    let mut lines = vec![format!("voltage_v,thrust_n{},power_w", throttles(study))];
     let reference_v = study.compiled.airframe.reference_v();
     for (volts, _) in study.voltages() {
         let text = volts.map_or(String::new(), cell);
         for level in level::against_thrust(study, volts, THRUSTS) {
-            let throttles = per_layer(study, |_, place| format!(",{}", or_empty(level.throttles[place])));
+            let throttles = cells(&level);
             // The file's map of power holds at the reference voltage.
             let holds = volts.is_none_or(|volts| volts == reference_v);
             let power = or_empty(if holds { level.power_w } else { f64::NAN });
@@ -204,11 +204,9 @@ fn hover(study: &Study<'_>) -> Result<Vec<String>, String> {
             study.compiled.airframe.name
         ));
     }
-    let throttles = per_layer(study, |layer, _| format!(",{layer}_throttle"));
-    let mut lines = vec![format!("voltage_v{throttles}")];
+    let mut lines = vec![format!("voltage_v{}", throttles(study))];
     for level in levels {
-        let throttles = per_layer(study, |_, place| format!(",{}", or_empty(level.throttles[place])));
-        lines.push(format!("{}{throttles}", cell(level.at)));
+        lines.push(format!("{}{}", cell(level.at), cells(&level)));
     }
     Ok(lines)
 }

@@ -59,12 +59,12 @@ pub fn layout(airframe: &Airframe) -> Figure {
         -length
     ));
     for (layer, _) in airframe.layers() {
-        let class = if layer == "lower" {
-            "lower-spin"
-        } else {
-            "upper-spin"
+        let (class, arrow) = match layer {
+            "upper" => ("upper-spin", " \u{2191}"),
+            "lower" => ("lower-spin", " \u{2193}"),
+            _ => ("upper-spin", ""),
         };
-        figure.entry(class, &format!("{layer} rotor"));
+        figure.entry(class, &format!("{layer} rotor{arrow}"));
     }
     figure.entry("forward", "forward");
     figure
@@ -91,17 +91,6 @@ fn disk_radius(places: &[[f64; 2]]) -> f64 {
 /// drawn between them.
 fn drawn(unit: &Unit, index: usize, [x, y]: [f64; 2], radius: f64, crowded: bool) -> String {
     let gap = if crowded { 7.0 } else { 0.0 };
-    let in_words = || {
-        let rotors = unit.rotors().map(|rotor| {
-            format!(
-                "{} rotor {} on output {}",
-                rotor.layer,
-                rotor.spin.name(),
-                rotor.channel
-            )
-        });
-        rotors.collect::<Vec<_>>().join(", ")
-    };
     let mut svg = String::new();
     let [px, py, pz] = unit.position_m;
     let _ = write!(
@@ -111,7 +100,7 @@ fn drawn(unit: &Unit, index: usize, [x, y]: [f64; 2], radius: f64, crowded: bool
         fixed(px, 4),
         fixed(py, 4),
         fixed(pz, 4),
-        in_words()
+        unit.in_words()
     );
     let rings = [("upper-spin", 1.0), ("lower-spin", 0.78)];
     for (rotor, (class, share)) in unit.rotors().zip(rings) {

@@ -43,14 +43,10 @@ pub fn against_voltage(study: &Study<'_>) -> Vec<Level> {
 fn level(study: &Study<'_>, at: f64, thrust_n: f64, condition: &Condition) -> Level {
     let (throttles, delivered) = study.mix([0.0, 0.0, 0.0, thrust_n], condition);
     let airframe = &study.compiled.airframe;
-    let mut channels = vec![f64::NAN; airframe.rotors()];
-    for (unit, pair) in airframe.units.iter().zip(&throttles) {
-        for (channel, throttle) in unit.channels().zip(pair) {
-            if let Some(place) = channels.get_mut(channel).filter(|_| delivered) {
-                *place = *throttle;
-            }
-        }
-    }
+    let throttles = throttles.into_iter().map(f64::from);
+    let channels: Vec<f64> = throttles
+        .map(|throttle| if delivered { throttle } else { f64::NAN })
+        .collect();
     let mean = |(_, outputs): (_, Vec<usize>)| {
         outputs.iter().map(|output| channels[*output]).sum::<f64>() / outputs.len() as f64
     };

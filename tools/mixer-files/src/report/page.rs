@@ -7,7 +7,6 @@
 mod link;
 
 use maud::{Markup, PreEscaped, html};
-use mixer_compiler::OfPair;
 use mixer_compiler::airframe::Axis;
 use mixer_compiler::diagnostic::{printable, rounded_up};
 use mixer_compiler::hover;
@@ -18,9 +17,8 @@ use crate::report::authority;
 use crate::report::bench::{BenchPoint, BenchPoints};
 use crate::report::bench_check::bench_check;
 use crate::report::comparison::Comparison;
-use crate::report::data::{Data, THRUSTS, YAW_COMMANDS};
+use crate::report::data::{Data, THRUSTS, YAW_COMMANDS, no_yaw};
 use crate::report::effort::Effort;
-use crate::report::field::Field;
 use crate::report::figure::Figure;
 use crate::report::layout;
 use crate::report::level;
@@ -60,23 +58,10 @@ pub struct Content {
     pub model: String,
 }
 
-/// A pair whose maps are drawn.
-struct Drawn<'a> {
-    study: Study<'a>,
-    of: &'a OfPair,
-    errors: [Field; 2],
-}
-
 /// The whole page.
 pub fn page(study: &Study<'_>, bench: Option<&BenchPoints>, digest: Option<&str>) -> String {
     let Content { body, model } = content(study, bench, digest);
-    let airframe = &study.compiled.airframe;
-    let what = if airframe.pairs.is_empty() {
-        "mixer"
-    } else {
-        "coaxial mixer"
-    };
-    let title = html! { title { (printable(&airframe.name)) ": " (what) } };
+    let title = html! { title { (printable(&study.compiled.airframe.name)) ": mixer" } };
     // The head's elements without content are closed, as XML demands.
     format!(
         "<!DOCTYPE html>\n<html xmlns=\"http://www.w3.org/1999/xhtml\" lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n\
@@ -91,29 +76,16 @@ pub fn page(study: &Study<'_>, bench: Option<&BenchPoints>, digest: Option<&str>
 }
 
 /// What stands in the page, and what its script needs.
-pub fn content<'a>(study: &Study<'a>, bench: Option<&BenchPoints>, digest: Option<&str>) -> Content {
+pub fn content(study: &Study<'_>, bench: Option<&BenchPoints>, digest: Option<&str>) -> Content {
     let compiled = study.compiled;
     let airframe = &compiled.airframe;
     let kinds = study.of_each();
-    let drawn = |of: &Study<'a>| {
-        Some(Drawn {
-            of: of.of_pair()?.1,
-            errors: Effort::BOTH.map(|effort| maps::error_field(of, effort)),
-            study: of.clone(),
-        })
-    };
-    let pairs: Vec<Drawn<'_>> = kinds.iter().filter_map(drawn).collect();
-    let rotors = &kinds[airframe.pairs.len()..];
-    let of_each = |draw: &dyn Fn(&Drawn<'_>) -> Markup| {
-        let title = |of: &Study<'_>| {
-            of.kind()
-                .filter(|_| pairs.len() > 1)
-                .map(|(_, name)| printable(name))
-        };
+    let (pairs, rotors) = kinds.split_at(airframe.pairs.len());
+    let of_each = |draw: &dyn Fn(&Study<'_>) -> Markup| {
         html! {
             @for (place, pair) in pairs.iter().enumerate() {
                 div data-pair=(place) {
-                    @if let Some(name) = title(&pair.study) { h3 { "\u{201c}" (name) "\u{201d}" } }
+                    @if !pair.name().is_empty() { h3 { (printable(pair.name())) } }
                     (draw(pair))
                 }
             }
@@ -132,20 +104,15 @@ pub fn content<'a>(study: &Study<'a>, bench: Option<&BenchPoints>, digest: Optio
         sections.push(("rotors", "Single rotors", rotors_section(study, rotors)));
     }
     if !pairs.is_empty() {
-        let is_benched = |pair: &Drawn<'_>| pair.study.index == study.index;
-        let forward = |pair: &Drawn<'_>| forward_section(&pair.study, bench.filter(|_| is_benched(pair)));
+        let bench_of = |pair: &Study<'_>| bench.filter(|_| pair.index == study.index);
         sections.extend([
+            ("attainable", "Attainable set", of_each(&attainable_section)),
             (
-                "attainable",
-                "Attainable set",
-                of_each(&|pair| attainable_section(&pair.study)),
+                "forward",
+                "Forward maps",
+                of_each(&|pair| forward_section(pair, bench_of(pair))),
             ),
-            ("forward", "Forward maps", of_each(&forward)),
-            (
-                "inverse",
-                "Inverse maps",
-                of_each(&|pair| inverse_section(&pair.study)),
-            ),
+            ("inverse", "Inverse maps", of_each(&inverse_section)),
             ("error", "Error of the inverse", of_each(&error_section)),
         ]);
     }
@@ -173,7 +140,7 @@ pub fn content<'a>(study: &Study<'a>, bench: Option<&BenchPoints>, digest: Optio
     };
     Content {
         body: body.into_string(),
-        model: model(study, &pairs).to_string(),
+        model: model(study, pairs).to_string(),
     }
 }
 
@@ -227,15 +194,10 @@ fn figures(figures: &[Markup]) -> Markup {
 }
 
 fn layout_section(study: &Study<'_>) -> Markup {
-    let airframe = &study.compiled.airframe;
-    let figure = layout::layout(airframe);
-    let arrows = match airframe.pairs.is_empty() {
-        true => "The number is the output.",
-        false => "\u{2191} output of the upper rotor, \u{2193} of the lower one.",
-    };
-    let caption = format!("Seen from above. {arrows} Disks are not to scale.");
+    let figure = layout::layout(&study.compiled.airframe);
+    let caption = "Seen from above. Disks are not to scale.";
     html! {
-        (beside(&still(&figure.svg(), &caption, &link::sweep(study, Data::Layout)), &table::units(study)))
+        (beside(&still(&figure.svg(), caption, &link::sweep(study, Data::Layout)), &table::units(study)))
     }
 }
 
@@ -273,13 +235,7 @@ fn level_section(study: &Study<'_>) -> Markup {
 
 fn comparison_section(study: &Study<'_>) -> Markup {
     let Some(comparison) = Comparison::sweep(study, YAW_COMMANDS) else {
-        return html! {
-            @if study.serves(Axis::Yaw) {
-                p { "At " (shortest(study.thrust_n)) " N no yaw is available." }
-            } @else {
-                p { "Yaw is not a served axis of this airframe." }
-            }
-        };
+        return html! { p { (printable(&no_yaw(study))) "." } };
     };
     let curves = |figure: Figure, caption: &str, word: &str| curves(study, &figure, caption, word);
     let plane = shown(
@@ -287,23 +243,10 @@ fn comparison_section(study: &Study<'_>) -> Markup {
         "Thrust and torque of every unit, one point per yaw command (Fig. 6 of the paper).",
         &link::sweep(study, Data::Yaw),
     );
-    let thrusts = plots::yaw_thrusts(&comparison);
-    let each = match thrusts.len() {
-        1 => vec![("Thrust of every unit.".to_owned(), "yaw-thrust".to_owned())],
-        _ => comparison
-            .names
-            .map(|name| {
-                (
-                    format!("Thrust of every unit by the {name} mixer."),
-                    format!("yaw-thrust-{name}"),
-                )
-            })
-            .to_vec(),
-    };
-    let thrusts = thrusts
+    let thrusts = plots::yaw_thrusts(&comparison)
         .into_iter()
-        .zip(each)
-        .map(|(figure, (caption, word))| curves(figure, &caption, &word));
+        .zip(["yaw-thrust", "yaw-thrust-2"]);
+    let thrusts = thrusts.map(|(figure, word)| curves(figure, "Thrust of every unit.", word));
     let others = [
         curves(plots::yaw_total(&comparison), "Total thrust given.", "yaw-total"),
         curves(
@@ -313,33 +256,20 @@ fn comparison_section(study: &Study<'_>) -> Markup {
         ),
     ];
     let plots: Vec<Markup> = [plane].into_iter().chain(thrusts).chain(others).collect();
-    let airframe = &study.compiled.airframe;
-    let of_units = if airframe.is_unlike() {
-        "units\u{2019} maps"
-    } else {
-        "pair\u{2019}s map"
-    };
-    let mean = |kinds: usize, one: &'static str, mean: &'static str| if kinds > 1 { mean } else { one };
-    let isolated = match (airframe.pairs.len(), airframe.single_rotors.len()) {
-        (0, rotors) => format!(
-            "An isolated rotor has the curve of {}.",
-            mean(rotors, "the file", "the single rotors\u{2019} mean")
-        ),
-        (pairs, rotors) => format!(
-            "An isolated rotor{} is the {} upper one with the lower at rest, f(d, 0): an extrapolation where the bench kept \
-             both turning.",
-            mean(rotors + 1, "", ", a single one too,"),
-            mean(pairs, "map\u{2019}s", "mean pair\u{2019}s")
-        ),
+    let isolated = match study.compiled.airframe.pairs.is_empty() {
+        true => "that of the single rotors in the mean",
+        false => {
+            "f(d, 0) of the pairs\u{2019} mean map, the lower rotor at rest: an extrapolation where the bench kept both turning"
+        }
     };
     html! {
         p {
             "A total thrust of " (shortest(comparison.thrust_n)) " N"
             @if study.hover_n() == Some(comparison.thrust_n) { ", the weight," }
-            " and yaw over the whole range that " (comparison.own()) " \
+            " and yaw over the whole range that this mixer \
              delivers there. The conventional mixer takes every rotor for isolated, with a torque proportional to its \
-             thrust. Both mixers\u{2019} throttles are put through the " (of_units) (study.at_reference()) ": what \
-             is shown is what the rotors give by that, not what the mixers believe. " (isolated)
+             thrust, and takes its thrust for " (isolated) ". Both mixers\u{2019} throttles are put through the units\u{2019} maps" (study.at_reference()) ": what \
+             is shown is what the rotors give by that, not what the mixers believe."
         }
         (figures(&plots))
         (table::comparison(&comparison))
@@ -518,13 +448,16 @@ fn inverse_section(study: &Study<'_>) -> Markup {
     }
 }
 
-fn error_section(Drawn { study, of, errors }: &Drawn<'_>) -> Markup {
+fn error_section(study: &Study<'_>) -> Markup {
+    let Some((_, of)) = study.of_pair() else {
+        return html! {};
+    };
     let observed = &of.residual;
     let at = match study.at_reference().as_str() {
         "" => " with the pair\u{2019}s map".to_owned(),
         at => at.to_owned(),
     };
-    let plot = |(effort, field)| {
+    let plot = |effort| {
         let caption = format!(
             "Proven for every point of the set: {} {unit} at most. Observed at {} points: {} {unit}, both{at}.",
             rounded_up(maps::error_bound(study, effort)),
@@ -532,9 +465,13 @@ fn error_section(Drawn { study, of, errors }: &Drawn<'_>) -> Markup {
             rounded_up(observed.efforts[effort as usize]),
             unit = effort.unit()
         );
-        shown(&maps::error(study, effort, field), &caption, &html! {})
+        shown(
+            &maps::error(study, effort, &maps::error_field(study, effort)),
+            &caption,
+            &html! {},
+        )
     };
-    let plots: Vec<Markup> = Effort::BOTH.into_iter().zip(errors).map(plot).collect();
+    let plots: Vec<Markup> = Effort::BOTH.map(plot).into();
     html! {
         p {
             "What the emitted inverse misses when its throttles are put through the forward map: the inverse in single \
@@ -562,13 +499,14 @@ fn cost_section(study: &Study<'_>, facts: &[Fact]) -> Markup {
     }
 }
 
-/// What the script needs: the forward map of each pair and the error on its grid.
-fn model(study: &Study<'_>, pairs: &[Drawn<'_>]) -> serde_json::Value {
+/// What the script needs of all pairs.
+fn model(study: &Study<'_>, pairs: &[Study<'_>]) -> serde_json::Value {
     let pairs: Vec<_> = pairs.iter().map(model_of).collect();
     serde_json::json!({ "throttle": study.pair.range(), "pairs": pairs })
 }
 
-fn model_of(Drawn { study, errors, .. }: &Drawn<'_>) -> serde_json::Value {
+/// What the script needs of a pair: the forward map and the error on its grid.
+fn model_of(study: &Study<'_>) -> serde_json::Value {
     let terms = study.of_pair().map_or_else(Vec::new, |(pair, _)| {
         let coefficients = pair.thrust_n.iter().zip(&pair.torque_nm);
         let terms = pair.basis.exponents().iter().zip(coefficients);
@@ -576,7 +514,8 @@ fn model_of(Drawn { study, errors, .. }: &Drawn<'_>) -> serde_json::Value {
             .map(|(&(i, j), (&f, &q))| serde_json::json!([i, j, f, q]))
             .collect()
     });
-    let grids = errors.each_ref().map(|field| {
+    let grids = Effort::BOTH.map(|effort| {
+        let field = maps::error_field(study, effort);
         let largest = field.values().iter().copied().fold(0.0, f64::max);
         // Where nothing is missed, 0 / 0 is NaN, which becomes 0.
         let share = |x: &f64| (1e3 * x / largest).round() as u16;

@@ -49,16 +49,9 @@ fn of_voltage(voltage_v: Option<f64>, index: usize) -> &'static str {
 /// Thrust or torque of every kind of single rotor over its throttle, with hover.
 pub fn rotors(rotors: &[Study<'_>], effort: Effort) -> Figure {
     let k = effort as usize;
-    let throttles = |of: &Study<'_>| -> Vec<f64> {
-        (0..=40)
-            .map(|step| of.throttles([f64::from(step) / 40.0; 2])[0])
-            .collect()
-    };
     let curve = |of: &Study<'_>| -> Vec<[f64; 2]> {
-        throttles(of)
-            .into_iter()
-            .map(|x| [x, of.pair.efforts([x; 2])[k]])
-            .collect()
+        let throttles = (0..=40).map(|step| of.throttles([f64::from(step) / 40.0; 2]));
+        throttles.map(|at| [at[0], of.pair.efforts(at)[k]]).collect()
     };
     let curves: Vec<Vec<[f64; 2]>> = rotors.iter().map(curve).collect();
     let extent = |axis: usize| range(curves.iter().flatten().map(|point| point[axis]));
@@ -68,8 +61,7 @@ pub fn rotors(rotors: &[Study<'_>], effort: Effort) -> Figure {
         .high(200.0)
         .reading_curves();
     for (count, (of, curve)) in rotors.iter().zip(&curves).enumerate() {
-        let name = of.kind().map_or(effort.word(), |(_, name)| name);
-        figure.curve(&told_apart(count), name, curve);
+        figure.curve(&told_apart(count), of.name(), curve);
         let hover = of.hover_throttles().into_iter().zip(of.hover_efforts());
         let hover: Vec<[f64; 2]> = hover.map(|([x, _], efforts)| [x, efforts[k]]).collect();
         figure.mark(&hover, "hover");
@@ -105,11 +97,11 @@ pub fn yaw_plane(study: &Study<'_>, comparison: &Comparison) -> Figure {
         .iter()
         .zip(["", " dashed", " dotted", " dash-dot"].into_iter().cycle())
     {
-        let whose = of
-            .kind()
-            .map_or_else(String::new, |(_, name)| format!(" of \"{name}\""));
-        let class = format!("border{dash}");
-        figure.outline(&class, &format!("attainable set{whose}"), &of.border_efforts());
+        let name = match of.name() {
+            "" => "attainable set".to_owned(),
+            name => format!("attainable set of {name}"),
+        };
+        figure.outline(&format!("border{dash}"), &name, &of.border_efforts());
     }
     for (name, class, answer) in &mixers(comparison) {
         for unit in 0..comparison.share_n.len() {
@@ -149,10 +141,7 @@ fn over_yaw(
 /// differ.
 pub fn yaw_thrusts(comparison: &Comparison) -> Vec<Figure> {
     let mixers = mixers(comparison);
-    match mixers
-        .iter()
-        .all(|mixer| distinct(comparison, mixer.2).len() <= 3)
-    {
+    match comparison.alike().len() <= 3 {
         true => vec![yaw_thrust(comparison, &mixers)],
         false => mixers
             .chunks(1)
@@ -180,7 +169,9 @@ fn yaw_thrust(comparison: &Comparison, mixers: &[Mixer]) -> Figure {
         figure.level("reference", &format!("share of the thrust{each}"), share);
     }
     for (name, class, answer) in mixers {
-        for (count, (curve, of)) in distinct(comparison, *answer).into_iter().enumerate() {
+        for (count, of) in comparison.alike().iter().enumerate() {
+            let at = |row: &Row| [row.yaw_nm, answer(row).efforts[of[0]][0]];
+            let curve: Vec<[f64; 2]> = comparison.rows.iter().map(at).collect();
             // Six dashes that are told apart without colour too.
             let dash = match *class {
                 "series-1" => ["", " long", " long-dot"],
@@ -190,27 +181,10 @@ fn yaw_thrust(comparison: &Comparison, mixers: &[Mixer]) -> Figure {
                 [_] => told_apart(count),
                 _ => format!("{class}{dash}"),
             };
-            figure.curve(&class, &format!("{name}, {}", listed(&of)), &curve);
+            figure.curve(&class, &format!("{name}, {}", listed(of)), &curve);
         }
     }
     figure
-}
-
-/// Curves of unit thrust that differ, each with the units that share it: symmetric units lie on one
-/// another.
-fn distinct(comparison: &Comparison, answer: fn(&Row) -> &YawResponse) -> Vec<(Vec<[f64; 2]>, Vec<usize>)> {
-    let mut curves: Vec<(Vec<[f64; 2]>, Vec<usize>)> = Vec::new();
-    for unit in 0..comparison.share_n.len() {
-        let of = |row: &Row| [row.yaw_nm, answer(row).efforts[unit][0]];
-        let curve: Vec<[f64; 2]> = comparison.rows.iter().map(of).collect();
-        let near = |(a, b): (&[f64; 2], &[f64; 2])| (a[1] - b[1]).abs() < 5e-4 * comparison.thrust_n;
-        let mut known = curves.iter_mut();
-        match known.find(|(other, _)| other.iter().zip(&curve).all(near)) {
-            Some((_, of)) => of.push(unit),
-            None => curves.push((curve, vec![unit])),
-        }
-    }
-    curves
 }
 
 fn listed(units: &[usize]) -> String {

@@ -99,11 +99,10 @@ impl<'a> Study<'a> {
         (0..self.compiled.airframe.views().count()).map(of).collect()
     }
 
-    /// Word and name of the kind: `rotor`, `tail`; `None` where all units are alike.
-    pub fn kind(&self) -> Option<(&'static str, &'a str)> {
-        let airframe = &self.compiled.airframe;
-        let view = airframe.views().nth(self.index)?;
-        airframe.is_unlike().then(|| view.of.name())
+    /// Name of the kind; empty where a file of one pair has none.
+    pub fn name(&self) -> &'a str {
+        let view = self.compiled.airframe.views().nth(self.index);
+        view.map_or("", |view| view.of.name().1)
     }
 
     /// The weight, N; `None` where the file has no mass, or the weight is not carried at the
@@ -122,7 +121,7 @@ impl<'a> Study<'a> {
         };
         let (throttles, _) = self.mix([0.0, 0.0, 0.0, weight_n], &self.reference());
         let mut distinct: Vec<[f64; 2]> = Vec::new();
-        let units = self.compiled.airframe.units.iter().zip(throttles);
+        let units = self.compiled.airframe.units.iter().zip(self.by_unit(&throttles));
         for (_, pair) in units.filter(|(unit, _)| unit.kind == self.index) {
             let same = |other: &[f64; 2]| (0..2).all(|k| (other[k] - pair[k]).abs() < 1e-3);
             if !distinct.iter().any(same) {
@@ -243,15 +242,15 @@ impl<'a> Study<'a> {
         self.compiled.airframe.allocation.controls(axis)
     }
 
-    /// The compiled mixer's throttles `[u, l]` of every unit for `[roll, pitch, yaw (N m), thrust
+    /// The compiled mixer's throttles by output for `[roll, pitch, yaw (N m), thrust
     /// (N)]`, and whether all of it is delivered.
-    pub fn mix(&self, wrench: [f64; 4], condition: &Condition) -> (Vec<[f64; 2]>, bool) {
+    pub fn mix(&self, wrench: [f64; 4], condition: &Condition) -> (Vec<f32>, bool) {
         let tables = &self.compiled.tables;
         let setpoint = Wrench::from_array(wrench.map(|x| x as f32));
         match tables.mix_with_health(&setpoint, condition.voltage_v, condition.health) {
-            Ok((throttle, _, saturation)) => (self.by_unit(&throttle), !saturation.any_axis()),
+            Ok((throttle, _, saturation)) => (throttle, !saturation.any_axis()),
             // No figure asks for what is not finite.
-            Err(_) => (vec![[f64::NAN; 2]; tables.units.len()], false),
+            Err(_) => (vec![f32::NAN; self.compiled.airframe.rotors()], false),
         }
     }
 

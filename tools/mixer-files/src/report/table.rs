@@ -42,25 +42,15 @@ pub fn facts<'a>(facts: impl Iterator<Item = &'a Fact>, more: &[(&str, String)])
 
 /// Places, spins and outputs of the units.
 pub fn units(study: &Study<'_>) -> Markup {
-    let airframe = &study.compiled.airframe;
-    let layers = || airframe.layers().map(|(layer, _)| layer);
-    let header = ["unit", "x (m)", "y (m)", "z (m)"].map(str::to_owned).into_iter();
-    let header: Vec<String> = header
-        .chain(layers().map(|layer| format!("{layer} rotor")))
-        .collect();
-    let units = airframe.units.iter().enumerate();
+    let header = ["unit", "x (m)", "y (m)", "z (m)", "rotors"];
+    let units = study.compiled.airframe.units.iter().enumerate();
     let rows: Vec<Vec<String>> = units
         .map(|(index, unit)| {
             let [x, y, z] = unit.position_m.map(|x| fixed(x, 4));
-            let rotor = |layer| {
-                let rotor = unit.rotors().find(|rotor| rotor.layer == layer);
-                let told = |rotor: Rotor| format!("{}, output {}", rotor.spin.name(), rotor.channel);
-                rotor.map_or_else(|| "none".to_owned(), told)
-            };
-            [index.to_string(), x, y, z]
-                .into_iter()
-                .chain(layers().map(rotor))
-                .collect()
+            let told =
+                |rotor: Rotor| format!("{} {}, output {}", rotor.layer, rotor.spin.name(), rotor.channel);
+            let rotors: Vec<String> = unit.rotors().map(told).collect();
+            vec![index.to_string(), x, y, z, rotors.join("; ")]
         })
         .collect();
     let caption = "From the centre of gravity: x forward, y right, z down";
@@ -119,35 +109,14 @@ pub fn matrices(study: &Study<'_>, facts: &[Fact]) -> Markup {
     }
 }
 
-/// Units by what both mixers make of them: those that always give the same as one another share
-/// their columns.
-fn alike(comparison: &Comparison) -> Vec<Vec<usize>> {
-    let same = |a: usize, b: usize| {
-        comparison.rows.iter().all(|row| {
-            [&row.coaxial, &row.conventional].into_iter().all(|answer| {
-                let [a, b] = [answer.efforts[a], answer.efforts[b]].map(rounded);
-                a == b
-            })
-        })
-    };
-    let mut groups: Vec<Vec<usize>> = Vec::new();
-    for unit in 0..comparison.share_n.len() {
-        match groups.iter_mut().find(|group| same(group[0], unit)) {
-            Some(group) => group.push(unit),
-            None => groups.push(vec![unit]),
-        }
-    }
-    groups
-}
-
 /// A unit's efforts to the digits of the table.
-fn rounded([f, q]: [f64; 2]) -> [String; 2] {
+pub(super) fn rounded([f, q]: [f64; 2]) -> [String; 2] {
     [fixed(f, 2), fixed(q, 3)]
 }
 
 /// The static comparison; an asterisk marks a throttle at its limit.
 pub fn comparison(comparison: &Comparison) -> Markup {
-    let groups = alike(comparison);
+    let groups = comparison.alike();
     let mut columns = vec!["yaw asked (N m)".to_owned(), "mixer".to_owned()];
     for group in &groups {
         let numbers: Vec<String> = group.iter().map(usize::to_string).collect();

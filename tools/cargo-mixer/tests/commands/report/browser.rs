@@ -170,7 +170,8 @@ fn pages_open_without_errors_and_show_values() {
         let thrust_n = next();
         for (volts, _) in study.voltages() {
             let (throttles, delivered) = study.mix([0.0, 0.0, 0.0, thrust_n], &study.at(volts));
-            let upper = throttles.iter().map(|pair| pair[0]).sum::<f64>() / throttles.len() as f64;
+            let pairs = study.by_unit(&throttles);
+            let upper = pairs.iter().map(|pair| pair[0]).sum::<f64>() / pairs.len() as f64;
             let shown = next();
             assert!(delivered, "{name}: {thrust_n} N at {volts:?} V");
             assert!(

@@ -44,13 +44,12 @@ pub(super) fn bench(study: &Study<'_>, bench: &BenchPoints, effort: Effort) -> M
     link(study, &word, &data::bench(bench, effort), OF_THE_FIGURE)
 }
 
-/// A word with the name of the pair, where there are several.
+/// A word with the name of the pair, where it has one.
 fn whose(study: &Study<'_>, word: &str) -> String {
-    let name = study.kind().filter(|_| study.compiled.airframe.pairs.len() > 1);
-    name.map_or_else(
-        || word.to_owned(),
-        |(_, name)| format!("{word}-{}", printable(name)),
-    )
+    match study.name() {
+        "" => word.to_owned(),
+        name => format!("{word}-{}", printable(name)),
+    }
 }
 
 fn link(study: &Study<'_>, word: &str, csv: &str, text: &str) -> Markup {

@@ -119,12 +119,8 @@ fn geometry(compiled: &Compiled, options: &Options, all: &mut Parameters) -> Res
         return Ok(());
     }
     let Some((class, kind, name)) = frames::find(compiled) else {
-        if compiled.airframe.pairs.is_empty() {
-            all.note("FRAME_CLASS and FRAME_TYPE are not written: ArduPilot's frames without a pair are not looked for");
-            return Ok(());
-        }
         all.note(
-            "no FRAME_CLASS has these rotors on these outputs: ArduPilot has X and plus frames of 4 and 6 pairs, Y6 and Y4; of \
+            "no FRAME_CLASS with pairs has these rotors on these outputs: ArduPilot has X and plus frames of 4 and 6 pairs, Y6 and Y4; of \
              those `cargo mixer new --outputs ardupilot` writes an airframe whose `channels` and spins are one's",
         );
         return Ok(());
