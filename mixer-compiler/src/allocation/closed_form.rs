@@ -45,7 +45,7 @@ impl Layout {
         let axes = [Vector3::x(), Vector3::y()].into_iter().zip(served);
         let free: Vec<_> = axes.filter(|(_, served)| !served).map(|(axis, _)| axis).collect();
         if airframe.is_unlike() {
-            return Err("units are not all of one pair");
+            return Err("units are of several kinds, or single rotors");
         }
         if !effectiveness.is_vertical() {
             return Err("thrust axes are tilted");
