@@ -19,7 +19,7 @@ pub mod y4 {
         tables::FORMAT == 2u32,
         "generated for another version of mixer-rt: use mixer-compiler or mixer-macros of its version, and generate the file anew"
     );
-    /// Number of units, pairs and single rotors.
+    /// Number of units.
     pub const UNITS: usize = 3;
     /// Number of output channels, one per rotor.
     pub const CHANNELS: usize = 4;
