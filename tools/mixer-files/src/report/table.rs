@@ -117,11 +117,14 @@ pub(super) fn rounded([f, q]: [f64; 2]) -> [String; 2] {
 /// The static comparison; an asterisk marks a throttle at its limit.
 pub fn comparison(comparison: &Comparison) -> Markup {
     let groups = comparison.alike();
+    // Thrust alone of many: a phone has room for it.
+    let quantities = if groups.len() > 3 { 1 } else { 2 };
     let mut columns = vec!["yaw asked (N m)".to_owned(), "mixer".to_owned()];
     for group in &groups {
         let numbers: Vec<String> = group.iter().map(usize::to_string).collect();
         let numbers = numbers.join(", ");
-        columns.extend([format!("f {numbers} (N)"), format!("Q {numbers} (N m)")]);
+        let both = [format!("f {numbers} (N)"), format!("Q {numbers} (N m)")];
+        columns.extend(both.into_iter().take(quantities));
     }
     columns.extend(["yaw given (N m)", "thrust given (N)"].map(str::to_owned));
     let count = comparison.rows.len();
@@ -136,7 +139,8 @@ pub fn comparison(comparison: &Comparison) -> Markup {
             let YawResponse { efforts, wrench, .. } = answer;
             let limited = if answer.within { "" } else { "*" };
             let mut cells = vec![fixed(row.yaw_nm, 3), format!("{name}{limited}")];
-            cells.extend(groups.iter().flat_map(|group| rounded(efforts[group[0]])));
+            let of = |group: &Vec<usize>| rounded(efforts[group[0]]).into_iter().take(quantities);
+            cells.extend(groups.iter().flat_map(of));
             cells.extend([fixed(wrench[2], 3), fixed(wrench[3], 2)]);
             lines.push(cells);
         }
