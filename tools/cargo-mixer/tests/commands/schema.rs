@@ -183,6 +183,7 @@ fn the_parser_agrees_key_by_key() {
         ),
         format!(
             "name = \"single\"\n{pair}\n[[rotor]]\nname = \"single\"\nthrust_n = [1.0, 10.0, 0.0]\ntorque_nm = [0.01, 0.2, 0.0]\n\
+             [rotor.uncertainty]\nthrust_percent = 1.5\ntorque_percent = 3.0\nsource = \"bench\"\n\
              [[unit]]\nposition_m = [-0.3, 0.0, 0.0]\nupper_spin = \"cw\"\nchannels = [2]\nrotor = \"single\"\n{UNIT}"
         ),
         format!(
