@@ -12,10 +12,10 @@ const METHODS: [&str; 2] = ["auto", "polynomial"];
 
 keys! { TABLE = "[inverse]":
     THRUST_TOLERANCE_N "thrust_tolerance_n" = "0.01", ValueKind::Number(Range::Positive),
-        "What a unit's thrust may miss at any voltage and density, N; without it at most a thousandth of the largest thrust of any unit.".default(THRUST_TOLERANCE)
+        "What a unit's thrust may miss at any voltage and density, N; where it is left out, a thousandth of the least unit's largest thrust, if that is less.".default(THRUST_TOLERANCE)
         .refusing("must be above 0", "the largest error that the mixer may make; 0.01 N is the default");
     TORQUE_TOLERANCE_NM "torque_tolerance_nm" = "1e-4", ValueKind::Number(Range::Positive),
-        "What a unit's torque may miss at any voltage and density, N m; without it at most a thousandth of the largest torque of any unit.".default(TORQUE_TOLERANCE)
+        "What a unit's torque may miss at any voltage and density, N m; where it is left out, a thousandth of the least unit's largest torque, if that is less.".default(TORQUE_TOLERANCE)
         .refusing("must be above 0", "the largest error that the mixer may make; 0.0001 N m is the default");
     METHOD "method" = "\"auto\"", ValueKind::Word(&METHODS),
         "auto: the cheapest evaluator that is proven to meet the tolerances; polynomial: the paper's, with a degree.";

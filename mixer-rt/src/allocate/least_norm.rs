@@ -10,12 +10,12 @@ use crate::layout::Unit;
 use crate::pair::Kinds;
 use crate::rolled;
 
-/// Halvings of the share of roll and pitch, and of that of yaw, in [`Frame::guard`]: every one is a least norm more in the
-/// stated bound.
-const HALVINGS: [u32; 2] = [3, 1];
+/// Shares that the guard tries, each the half of the one before, of roll and pitch, then of yaw: of whole frames, and with
+/// rotors out, where yaw has any. Every one is a least norm more in the stated bound.
+const TRIES: [[u32; 2]; 2] = [[3, 1], [2, 0]];
 
-/// Times that the guard runs least norm.
-pub const GUARD_LEAST_NORMS: u32 = HALVINGS[0] + HALVINGS[1] + 1;
+/// Times that the guard runs least norm, of whole frames and with rotors out.
+pub const GUARD_LEAST_NORMS: [u32; 2] = [TRIES[0][0] + TRIES[0][1] + 1, TRIES[1][0] + TRIES[1][1] + 1];
 
 impl<K: Kinds, S: AllocationMethod, const VERTICAL: bool> Frame<'_, '_, K, S, VERTICAL> {
     /// Efforts of least norm of a unit for a wrench (N m, N), at the reference voltage.
@@ -75,18 +75,20 @@ impl<K: Kinds, S: AllocationMethod, const VERTICAL: bool> Frame<'_, '_, K, S, VE
             thrust = clamp(thrust, least, most);
         }
         let mut kept = [0.0; 2];
-        for (axes, halvings) in HALVINGS.into_iter().enumerate() {
+        for (axes, tries) in TRIES[usize::from(!is_whole)].into_iter().enumerate() {
             let mut step = 1.0;
-            for _ in rolled(0..halvings) {
-                step *= 0.5;
+            for _ in rolled(0..tries) {
                 let mut more = kept;
                 more[axes] += step;
+                step *= 0.5;
                 let [torque, turn] = more;
-                if self.serve(
-                    &[torque * roll, torque * pitch, turn * yaw, thrust],
-                    units,
-                    is_whole,
-                ) {
+                if more[axes] <= 1.0
+                    && self.serve(
+                        &[torque * roll, torque * pitch, turn * yaw, thrust],
+                        units,
+                        is_whole,
+                    )
+                {
                     kept = more;
                 }
             }

@@ -78,20 +78,21 @@ const ROTOR_ALONE: u32 = 800;
 pub(super) fn bound(compiled: &Compiled) -> Option<u32> {
     match &compiled.tables.closed_form {
         Some(table) => closed_form(compiled, table),
-        None => general(compiled, compiled.airframe.single_units(), 0),
+        None => general(compiled, compiled.airframe.single_units(), false),
     }
 }
 
 /// The bound with any number of rotors out, of every frame.
 pub(super) fn with_rotors_out(compiled: &Compiled) -> Option<u32> {
-    general(compiled, compiled.airframe.units.len(), 1)
+    general(compiled, compiled.airframe.units.len(), true)
 }
 
-/// Least norm of the request, the interior point method with so many slacks beside that of a reserve, and the guard, where
-/// so many units have one rotor or none.
-fn general(compiled: &Compiled, alone: usize, slacks: u32) -> Option<u32> {
-    let least_norms = (1 + GUARD_LEAST_NORMS) * least_norm(compiled, alone)?;
-    Some(least_norms + per_mix(compiled) + interior(compiled, slacks))
+/// Least norm of the request, the interior point method, and the guard, where so many units have one rotor or none. With
+/// rotors out there is a slack more.
+fn general(compiled: &Compiled, alone: usize, is_out: bool) -> Option<u32> {
+    let guard = GUARD_LEAST_NORMS[usize::from(is_out)];
+    let least_norms = (1 + guard) * least_norm(compiled, alone)?;
+    Some(least_norms + per_mix(compiled) + interior(compiled, u32::from(is_out)))
 }
 
 /// Least norm of all units, so many of which have one rotor or none.

@@ -411,9 +411,14 @@ fn compiled(
         let reason = format!("the predicted map cannot be inverted at any idle from {from} to {to}");
         let needed = match narrower() {
             Some(PredictedPair { throttle, .. }) => {
-                format!("--throttle {},{}, over which it can be", throttle.min, throttle.max)
+                format!(
+                    "--throttle {},{}, over which it can be",
+                    throttle.min, throttle.max
+                )
             }
-            None => "a run of a rotor whose thrust and torque grow over the whole throttle, or a bench".to_owned(),
+            None => {
+                "a run of a rotor whose thrust and torque grow over the whole throttle, or a bench".to_owned()
+            }
         };
         Refusal::of(file, reason, needed)
     })
