@@ -2,6 +2,7 @@
 
 use crate::airframe::{Airframe, Basis};
 use crate::diagnostic::source::Source;
+use crate::dynamics::Dynamics;
 use crate::inverse::evaluator::Evaluator;
 use crate::model::effectiveness::Effectiveness;
 use crate::model::injectivity::Injectivity;
@@ -33,6 +34,8 @@ macro_rules! compiled {
             /// Share of the attainable set's area that the sides of the closed form lose, or why the airframe
             /// has no closed form.
             $visibility lost_outside_border: Result<f64, &'static str>,
+            /// How the rotors of each kind of unit follow their throttles; `None` where `mix_dynamic` is not proven.
+            $visibility dynamics: Option<Vec<Dynamics>>,
             /// What is emitted.
             $visibility tables: MixerTables,
         }

@@ -1,6 +1,6 @@
 //! The generated Rust: the tables as constants and one inline mixer function.
 
-use mixer_rt::Wrench;
+use mixer_rt::{Wrench, tables};
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
@@ -13,7 +13,8 @@ pub(crate) fn module(compiled: &Compiled) -> TokenStream {
     let module_doc = doc(&module_lines(compiled));
     let mixer = mixer_type(compiled);
     let functions = functions();
-    let tables = tables(&compiled.tables);
+    let dynamics = dynamics(&compiled.tables.lags);
+    let tables = tables_of(&compiled.tables);
     let units = Literal::usize_unsuffixed(compiled.tables.units.len());
     let channels = Literal::usize_unsuffixed(compiled.tables.channels());
     let scale = wrench(compiled.scale());
@@ -94,6 +95,8 @@ pub(crate) fn module(compiled: &Compiled) -> TokenStream {
             #mixer
 
             #functions
+
+            #dynamics
 
             #tables
         }
@@ -183,6 +186,64 @@ fn functions() -> TokenStream {
     }
 }
 
+/// What mixes with rotors under way; nothing where the airframe has no lags.
+fn dynamics(lags: &[tables::Lag]) -> TokenStream {
+    if lags.is_empty() {
+        return TokenStream::new();
+    }
+    let (count, lags) = (Literal::usize_unsuffixed(lags.len()), lags.tokens());
+    quote! {
+        /// How the rotors of each kind of unit follow their throttles.
+        #[doc(hidden)]
+        pub static LAGS: [tables::Lag; #count] = #lags;
+
+        /// The rotors under way.
+        pub type State = rt::RotorState<CHANNELS>;
+
+        /// [`mix`] for rotors that are under way: throttles that are held for `held_s` seconds, and
+        /// whose thrust follows the request while the rotors change their speeds. `state` moves on with
+        /// them. A time below 0, or NaN, is 0. `achieved` and `saturation` are those of [`mix`].
+        ///
+        /// # Errors
+        /// As [`mix`]; `state` is then as it was.
+        #[inline]
+        pub fn mix_dynamic(
+            state: &mut State,
+            setpoint: &rt::Wrench,
+            conditions: impl ::core::convert::Into<rt::Conditions>,
+            held_s: f32,
+        ) -> ::core::result::Result<rt::Mix<CHANNELS>, rt::SetpointError> {
+            tables::mix_dynamic::<UNITS, CHANNELS, false, _, _>(
+                &TABLES, &LAGS, state, setpoint, conditions.into(), rt::Health::GOOD, held_s,
+            )
+        }
+
+        /// [`mix_dynamic`] with the rotors out that `health` names by channel.
+        ///
+        /// # Errors
+        /// As [`mix_dynamic`].
+        #[inline]
+        pub fn mix_dynamic_with_health(
+            state: &mut State,
+            setpoint: &rt::Wrench,
+            conditions: impl ::core::convert::Into<rt::Conditions>,
+            health: rt::Health,
+            held_s: f32,
+        ) -> ::core::result::Result<rt::Mix<CHANNELS>, rt::SetpointError> {
+            tables::mix_dynamic::<UNITS, CHANNELS, true, _, _>(
+                &TABLES, &LAGS, state, setpoint, conditions.into(), health, held_s,
+            )
+        }
+
+        /// Moves `state` on as rotors do that are `given` these throttles for `held_s` seconds: for a host that
+        /// gives others than [`mix_dynamic`] did, with the state from before it.
+        #[inline]
+        pub fn follow(state: &mut State, given: &[f32; CHANNELS], held_s: f32) {
+            tables::follow_given(&TABLES, &LAGS, state, given, held_s);
+        }
+    }
+}
+
 /// What the module's documentation says.
 fn module_lines(compiled: &Compiled) -> Vec<String> {
     let airframe = &compiled.airframe;
@@ -237,7 +298,7 @@ fn module_lines(compiled: &Compiled) -> Vec<String> {
 }
 
 /// The tables: a constant per part, and the static that `mixer-rt` reads.
-fn tables(tables: &MixerTables) -> TokenStream {
+fn tables_of(tables: &MixerTables) -> TokenStream {
     let view = tables.view();
     let units = (*view.units).tokens();
     let (throttle, rows) = (view.throttle.tokens(), view.row_scale.tokens());

@@ -79,7 +79,13 @@ impl Flywheel {
     /// Those of the file's `[vehicle]`; `None` without.
     pub fn of(airframe: &Airframe) -> Vec<Option<Flywheel>> {
         match &airframe.vehicle {
-            Some(vehicle) => Flywheel::of_mass(airframe, vehicle.mass_kg, vehicle.rotor_inertia_kg_m2),
+            Some(vehicle) => {
+                let rotors =
+                    Flywheel::of_mass(airframe, vehicle.mass_kg, vehicle.rotor_inertia_kg_m2).into_iter();
+                let stated =
+                    |rotor: Flywheel| vehicle.rotor_lag_s.map_or(rotor, |lag_s| rotor.with_lag(lag_s));
+                rotors.map(|rotor| rotor.map(stated)).collect()
+            }
             None => vec![None; airframe.views().count()],
         }
     }

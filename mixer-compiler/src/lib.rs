@@ -14,6 +14,7 @@ mod modules {
     pub mod airframe;
     pub mod atmosphere;
     pub mod diagnostic;
+    pub mod dynamics;
     pub mod flywheel;
     pub mod hover;
     pub mod model;
@@ -44,6 +45,7 @@ pub use modules::*;
 
 use airframe::{Airframe, Pair};
 use allocation::{closed_form, thrust_range};
+use dynamics::Dynamics;
 use model::PairMap;
 use model::effectiveness::Effectiveness;
 use model::injectivity::{self, Injectivity};
@@ -85,7 +87,7 @@ fn compile_airframe(source: &Source, airframe: Airframe) -> Result<Compiled, Vec
     let model = Model::new(airframe)?;
     let views: Vec<_> = model.airframe.pair_views().collect();
     let selected = selection::select(&views, &model.corrections)?;
-    let (tables, stated, lost_outside_border) = model.tables(&views, &selected);
+    let (mut tables, stated, lost_outside_border) = model.tables(&views, &selected);
     let thrust_range_n = thrust_range::thrust_range(&model.airframe, &tables)?;
     thrust_range::check_ends(&model.airframe, &tables, thrust_range_n)?;
     drop(views);
@@ -97,6 +99,8 @@ fn compile_airframe(source: &Source, airframe: Airframe) -> Result<Compiled, Vec
         residual: selected.residual,
         certificate: selected.certificate,
     });
+    let dynamics = Dynamics::of(&model.airframe);
+    tables.lags = dynamics.iter().flatten().map(Dynamics::lag).collect();
     let compiled = Compiled {
         source: source.clone(),
         maps: model.maps,
@@ -106,6 +110,7 @@ fn compile_airframe(source: &Source, airframe: Airframe) -> Result<Compiled, Vec
         thrust_range_n,
         stated,
         lost_outside_border,
+        dynamics,
         tables,
     };
     probe::run(&compiled)?;

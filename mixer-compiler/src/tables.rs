@@ -12,10 +12,10 @@ mod quantity;
 mod rows;
 
 use mixer_rt::{
-    Conditions, Health, Saturation, SetpointError, Wrench,
+    Conditions, Health, RotorState, Saturation, SetpointError, Wrench,
     tables::{
-        Border, Cell, ClosedForm, ClosedFormUnit, Facets, Inverse, NO_CHANNEL, Pair, PairKind, Priorities,
-        RotorAlone, Steep, Tables, ThrottleRange, Tolerance, Unit, UnitState, Unlike,
+        Border, Cell, ClosedForm, ClosedFormUnit, Facets, Inverse, Lag, NO_CHANNEL, Pair, PairKind,
+        Priorities, RotorAlone, Steep, Tables, ThrottleRange, Tolerance, Unit, UnitState, Unlike,
     },
 };
 
@@ -58,6 +58,8 @@ pub struct MixerTables {
     pub closed_form: Option<ClosedFormTable>,
     /// Largest errors of the mixer.
     pub tolerance: Tolerance,
+    /// How the rotors of each kind of unit follow; empty where the airframe has no `mix_dynamic`.
+    pub lags: Vec<Lag>,
 }
 
 /// What is fitted and proven: the map of a unit, its inverse, and the throttles that it may give.
@@ -143,6 +145,12 @@ impl ClosedFormTable {
     }
 }
 
+/// Channels of the largest frame.
+const MOST_CHANNELS: usize = 64;
+
+/// The rotors of any frame under way.
+pub type AnyState = RotorState<MOST_CHANNELS>;
+
 /// What [`MixerTables::mix`] gives: throttle per channel, achieved wrench, saturation.
 pub type AnyMix = (Vec<f32>, Wrench, Saturation);
 
@@ -185,6 +193,7 @@ impl MixerTables {
                 rotors.map(|rotor| curve_table(&rotor.alone)).collect()
             },
             tolerance: parts.tolerance,
+            lags: Vec::new(),
         }
     }
 
@@ -280,9 +289,29 @@ impl MixerTables {
             conditions.into(),
             health,
             states,
-            &mut throttle,
+            throttle.as_mut_slice(),
         )?;
         Ok((throttle, achieved, saturation))
+    }
+
+    /// [`mixer_rt::tables::mix_dynamic`], operation by operation as the generated mixer does.
+    ///
+    /// # Errors
+    /// As [`mixer_rt::tables::mix`].
+    pub fn mix_dynamic(
+        &self,
+        state: &mut AnyState,
+        setpoint: &Wrench,
+        conditions: impl Into<Conditions>,
+        health: Health,
+        held_s: f32,
+    ) -> Result<AnyMix, SetpointError> {
+        let (tables, conditions) = (self.view(), conditions.into());
+        let mix = mixer_rt::tables::mix_dynamic::<{ MOST_CHANNELS / 2 }, MOST_CHANNELS, true, _, _>(
+            &tables, &self.lags, state, setpoint, conditions, health, held_s,
+        )?;
+        let throttle = mix.throttle.into_iter().take(self.channels());
+        Ok((throttle.collect(), mix.achieved, mix.saturation))
     }
 
     /// Throttles `[u, l]` of the units for the efforts of least norm at `[k_f, k_Q]`; `None` where some

@@ -14,6 +14,7 @@
 //!   -> throttles                   of least norm, else of the request cut by priority   allocate.rs
 //!        of every unit                 inverse of (f, Q)(u, l)                              pair/inverse.rs
 //!   -> achieved wrench             M (k_f f(u, l), k_Q Q(u, l))                          mix.rs
+//!   -> throttles of rotors under way                                                     dynamic.rs
 //! ```
 //!
 //! No heap, no dependencies, no panic path, no `unsafe` but for the hardware square root. All
@@ -29,6 +30,7 @@ mod arithmetic;
 #[cfg(feature = "serde")]
 mod array;
 mod conditions;
+mod dynamic;
 mod health;
 mod layout;
 mod mix;
@@ -40,6 +42,7 @@ mod wrench;
 
 pub(crate) use arithmetic::{clamp, divided, divisor, larger, quotient, rolled, smaller, sqrt};
 pub use conditions::Conditions;
+pub use dynamic::RotorState;
 pub use health::Health;
 pub use mix::{Airframe, Mix, Outputs};
 pub use saturation::{Direction, Saturation};

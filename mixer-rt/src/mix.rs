@@ -92,7 +92,8 @@ pub fn mix<const UNITS: usize, const CHANNELS: usize, K: Kinds, S: AllocationMet
 ) -> Result<Mix<CHANNELS>, SetpointError> {
     let mut throttle = [tables.throttle.min; CHANNELS];
     let states = || [UnitState::default(); UNITS];
-    let (achieved, saturation) = mix_into(tables, setpoint, conditions, health, states, &mut throttle)?;
+    let outputs = throttle.as_mut_slice();
+    let (achieved, saturation) = mix_into(tables, setpoint, conditions, health, states, outputs)?;
     Ok(Mix {
         throttle,
         achieved,
@@ -101,11 +102,11 @@ pub fn mix<const UNITS: usize, const CHANNELS: usize, K: Kinds, S: AllocationMet
 }
 
 /// [`mix`] into buffers, for layouts whose size is known only at run time: `states` makes one element
-/// per unit where the closed form does not serve, `throttle` takes one value per channel. Units or
-/// channels beyond a buffer's end are left out.
+/// per unit where the closed form does not serve, `sink` takes what each unit is given: of `[f32]` one throttle per
+/// channel. Units or channels beyond a buffer's end are left out.
 ///
 /// # Errors
-/// As [`mix`]; `throttle` is then as it was.
+/// As [`mix`]; `sink` is then as it was.
 #[inline(always)]
 pub fn mix_into<K: Kinds, S: AllocationMethod, W: AsMut<[UnitState]>>(
     tables: &Tables<'_, K, S>,
@@ -113,11 +114,37 @@ pub fn mix_into<K: Kinds, S: AllocationMethod, W: AsMut<[UnitState]>>(
     conditions: Conditions,
     health: Health,
     states: impl FnOnce() -> W,
-    throttle: &mut [f32],
+    sink: &mut (impl Sink + ?Sized),
 ) -> Result<(Wrench, Saturation), SetpointError> {
-    match mix_in_closed_form(tables, setpoint, conditions, health, throttle) {
+    match mix_in_closed_form(tables, setpoint, conditions, health, sink) {
         Some(mixed) => mixed,
-        None => mix_in_general(tables, setpoint, conditions, health, states().as_mut(), throttle),
+        None => mix_in_general(tables, setpoint, conditions, health, states().as_mut(), sink),
+    }
+}
+
+/// Takes what a mix gives, unit by unit.
+pub trait Sink {
+    /// Of a unit, by index: its channels, the rotors that turn, its throttles `[u, l]` and their thrust, N at the reference
+    /// voltage. A unit may come again, as a request is cut; the last time counts.
+    fn take(&mut self, unit: usize, channels: [u8; 2], rotors: Rotors, throttles: [f32; 2], thrust_n: f32);
+}
+
+/// The throttles by channel.
+impl Sink for [f32] {
+    #[inline(always)]
+    fn take(
+        &mut self,
+        _unit: usize,
+        channels: [u8; 2],
+        _rotors: Rotors,
+        throttles: [f32; 2],
+        _thrust_n: f32,
+    ) {
+        for (channel, value) in channels.iter().zip(throttles) {
+            if let Some(slot) = self.get_mut(usize::from(*channel)) {
+                *slot = value;
+            }
+        }
     }
 }
 
@@ -132,7 +159,7 @@ fn mix_in_general<K: Kinds, S: AllocationMethod>(
     conditions: Conditions,
     health: Health,
     states: &mut [UnitState],
-    throttle: &mut [f32],
+    sink: &mut (impl Sink + ?Sized),
 ) -> Mixed {
     let (request, bounded) = bounded(setpoint)?;
     let Correction { factors, clamped } =
@@ -157,8 +184,14 @@ fn mix_in_general<K: Kinds, S: AllocationMethod>(
         add_power_bias(tables, &bounded, factors, states);
     }
     let mut achieved = [0.0; 4];
-    for (unit, state) in rolled(units.iter().zip(states)) {
-        write(unit.channels, state.throttles, throttle);
+    for (index, (unit, state)) in rolled(units.iter().zip(states).enumerate()) {
+        sink.take(
+            index,
+            unit.channels,
+            state.rotors,
+            state.throttles,
+            state.efforts[0],
+        );
         unit.add_wrench(state.efforts, factors, &mut achieved);
     }
     let saturation = Saturation::between(&request, &achieved, &tables.tolerance.wrench);
@@ -172,12 +205,12 @@ fn mix_in_closed_form<K: Kinds, S: AllocationMethod>(
     setpoint: &Wrench,
     conditions: Conditions,
     health: Health,
-    throttle: &mut [f32],
+    sink: &mut (impl Sink + ?Sized),
 ) -> Option<Mixed> {
     let is_good = health.is_good_below(2 * tables.units.len());
     let closed_form = tables.closed_form.closed_form().filter(|_| is_good)?;
     let kind = tables.kinds.pair(0)?;
-    Some(mix_by(closed_form, kind, tables, setpoint, conditions, throttle))
+    Some(mix_by(closed_form, kind, tables, setpoint, conditions, sink))
 }
 
 /// Mixes in closed form, with all rotors. Efforts next to the border ([`Attained::Perhaps`])
@@ -191,7 +224,7 @@ fn mix_by<K: Kinds, S>(
     tables: &Tables<'_, K, S>,
     setpoint: &Wrench,
     conditions: Conditions,
-    throttle: &mut [f32],
+    sink: &mut (impl Sink + ?Sized),
 ) -> Mixed {
     let (request, bounded) = bounded(setpoint)?;
     let Correction { factors, clamped } =
@@ -218,11 +251,11 @@ fn mix_by<K: Kinds, S>(
     }
     loop {
         let mut is_near = true;
-        for (unit, effort) in closed_form.units.iter().zip(&mut efforts) {
+        for (index, (unit, effort)) in closed_form.units.iter().zip(&mut efforts).enumerate() {
             let wanted = [effort.thrust, effort.torque];
             let throttles = kind.inverse.throttles(&kind.pair, &tables.throttle, wanted);
-            write(unit.channels, throttles, throttle);
             [effort.thrust, effort.torque] = kind.pair.efforts(throttles);
+            sink.take(index, unit.channels, Rotors::BOTH, throttles, effort.thrust);
             if attained == Attained::Perhaps {
                 is_near &= is_within([effort.thrust, effort.torque], wanted, tables.tolerance.efforts);
             }
@@ -262,16 +295,6 @@ fn finite(setpoint: &Wrench) -> Result<[f32; 4], SetpointError> {
         }
     }
     Ok(request)
-}
-
-/// Writes a unit's throttles to its channels.
-#[inline(always)]
-fn write(channels: [u8; 2], throttles: [f32; 2], outputs: &mut [f32]) {
-    for (channel, value) in channels.iter().zip(throttles) {
-        if let Some(slot) = outputs.get_mut(usize::from(*channel)) {
-            *slot = value;
-        }
-    }
 }
 
 /// `request` at the reference voltage, by `[1 / k_f, 1 / k_Q]`: with vertical axes roll, pitch and

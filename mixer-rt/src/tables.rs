@@ -4,7 +4,7 @@
 
 /// Format of these types and functions. It counts up with every change that a generated module can
 /// see; the module asserts it at compile time.
-pub const FORMAT: u32 = 2;
+pub const FORMAT: u32 = 3;
 
 pub use crate::allocate::closed_form::{
     AllocationMethod, Border, Cell, ClosedForm, ClosedFormUnit, Facets, Grid, Knot, NoClosedForm, Outline,
@@ -17,8 +17,9 @@ pub use crate::allocate::priorities::{Airmode, Priorities, REQUEST_LIMIT};
 pub use crate::allocate::unit::UnitState;
 pub use crate::arithmetic::{Scalar, sqrt};
 pub use crate::conditions::{Law, LawPiece};
+pub use crate::dynamic::{Lag, follow_given, mix_dynamic};
 pub use crate::layout::{NO_CHANNEL, Tables, Tolerance, Unit};
-pub use crate::mix::{Sealed, mix, mix_into};
+pub use crate::mix::{Sealed, Sink, mix, mix_into};
 pub use crate::pair::{
     Biquadratic, Coefficients, Cubic, Inverse, Kinds, Pair, PairKind, PolynomialInverse, Quantity, Quartic,
     RotorAlone, ThrottleRange, Unlike, solve,

@@ -17,7 +17,7 @@
 pub mod x8_22in_cubic {
     use ::mixer_rt::{self as rt, tables};
     const _: () = ::core::assert!(
-        tables::FORMAT == 2u32,
+        tables::FORMAT == 3u32,
         "generated for another version of mixer-rt: use mixer-compiler or mixer-macros of its version, and generate the file anew"
     );
     /// Number of coaxial units.
@@ -121,6 +121,64 @@ pub mod x8_22in_cubic {
             _,
             _,
         >(&TABLES, setpoint, conditions.into(), health)
+    }
+    /// How the rotors of each kind of unit follow their throttles.
+    #[doc(hidden)]
+    pub static LAGS: [tables::Lag; 1] = [
+        tables::Lag {
+            base: 375.07376,
+            rise: 364.65506,
+            coast: ::core::option::Option::None,
+        },
+    ];
+    /// The rotors under way.
+    pub type State = rt::RotorState<CHANNELS>;
+    /// [`mix`] for rotors that are under way: throttles that are held for `held_s` seconds, and
+    /// whose thrust follows the request while the rotors change their speeds. `state` moves on with
+    /// them. A time below 0, or NaN, is 0. `achieved` and `saturation` are those of [`mix`].
+    ///
+    /// # Errors
+    /// As [`mix`]; `state` is then as it was.
+    #[inline]
+    pub fn mix_dynamic(
+        state: &mut State,
+        setpoint: &rt::Wrench,
+        conditions: impl ::core::convert::Into<rt::Conditions>,
+        held_s: f32,
+    ) -> ::core::result::Result<rt::Mix<CHANNELS>, rt::SetpointError> {
+        tables::mix_dynamic::<
+            UNITS,
+            CHANNELS,
+            false,
+            _,
+            _,
+        >(&TABLES, &LAGS, state, setpoint, conditions.into(), rt::Health::GOOD, held_s)
+    }
+    /// [`mix_dynamic`] with the rotors out that `health` names by channel.
+    ///
+    /// # Errors
+    /// As [`mix_dynamic`].
+    #[inline]
+    pub fn mix_dynamic_with_health(
+        state: &mut State,
+        setpoint: &rt::Wrench,
+        conditions: impl ::core::convert::Into<rt::Conditions>,
+        health: rt::Health,
+        held_s: f32,
+    ) -> ::core::result::Result<rt::Mix<CHANNELS>, rt::SetpointError> {
+        tables::mix_dynamic::<
+            UNITS,
+            CHANNELS,
+            true,
+            _,
+            _,
+        >(&TABLES, &LAGS, state, setpoint, conditions.into(), health, held_s)
+    }
+    /// Moves `state` on as rotors do that are `given` these throttles for `held_s` seconds: for a host that
+    /// gives others than [`mix_dynamic`] did, with the state from before it.
+    #[inline]
+    pub fn follow(state: &mut State, given: &[f32; CHANNELS], held_s: f32) {
+        tables::follow_given(&TABLES, &LAGS, state, given, held_s);
     }
     /// The units: rows of M+, columns of M, output channels.
     const UNIT_TABLES: [tables::Unit; UNITS] = [

@@ -121,7 +121,7 @@ fn is_shown(row: &&Row) -> bool {
     let Subject { mixer, airframe, .. } = &row.subject;
     match airframe.as_str() {
         "isae-x8" => true,
-        "px4-y6" | "px4-x12" => matches!(mixer.as_str(), "coaxial" | "one-rotor-out"),
+        "px4-y6" | "px4-x12" => matches!(mixer.as_str(), "coaxial" | "one-rotor-out" | "dynamic"),
         "roll-pitch-yaw" | "x8-16in-quartic" | "x8-22-16in" | "y4" | "hexa-stacked" => mixer == "coaxial",
         _ => false,
     }
@@ -136,7 +136,7 @@ pub fn document(compiler: &str, rows: &[Row]) -> String {
          * saturated: 2,000 requests up to four times the authority, one axis alone, on and beyond the border\n\
          * worst found: the largest count of these and of a search of {} billion instructions on the target. For a guaranteed bound see \
          `cargo mixer check`\n\n\
-         `coaxial` is this mixer, `c-interface` its library for C, `one-rotor-out` and `two-rotors-out` its `mix_with_health` with \
+         `coaxial` is this mixer, `c-interface` its library for C, `dynamic` its `mix_dynamic`, `one-rotor-out` and `two-rotors-out` its `mix_with_health` with \
          random rotors out (\"attainable\" is with all rotors). `conventional` (the paper's), `sequential` (after PX4) and `wls` (the \
          crate `wls-alloc`) take rotors as isolated. `roll-pitch-yaw` is the paper's X8 with that airmode.\n\n\
          | mixer | airframe | attainable, mean | saturated, mean | worst found | code | tables | stack |\n\

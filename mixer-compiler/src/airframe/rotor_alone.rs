@@ -34,6 +34,11 @@ pub struct RotorAlone {
 }
 
 impl RotorAlone {
+    /// One of its quantities as a pair's in the cubic basis, that of the upper rotor.
+    pub(crate) fn in_cubic_terms([a1, a2, a3]: [f64; 3]) -> [f64; 9] {
+        [a3, 0.0, 0.0, 0.0, a2, 0.0, 0.0, a1, 0.0]
+    }
+
     /// The efforts `[f, Q]` at the rotor's throttle, N and N m at the reference voltage.
     pub fn efforts(&self, throttle: f64) -> [f64; 2] {
         [self.thrust_n, self.torque_nm].map(|coefficients| value(coefficients, throttle))

@@ -12,7 +12,7 @@
 //! An invertible linear change of the efforts changes nothing about injectivity. All signs are
 //! proven by [`Bivariate`].
 
-use crate::airframe::{Basis, Pair, value_of_terms};
+use crate::airframe::{Basis, Pair, RotorAlone, value_of_terms};
 use crate::bounds::interval::Interval;
 use crate::diagnostic::{Code, Diagnostic, rounded};
 use crate::model::PairMap;
@@ -126,6 +126,29 @@ impl EnclosedPairMap {
             }),
             _ => Err(None),
         }
+    }
+
+    /// The map of a rotor alone, constant along the lower throttle.
+    pub(crate) fn of_rotor(rotor: &RotorAlone) -> Self {
+        let [thrust_n, torque_nm] = [rotor.thrust_n, rotor.torque_nm].map(RotorAlone::in_cubic_terms);
+        Self::of(Basis::Cubic, &thrust_n, &torque_nm)
+    }
+
+    /// A proven lower bound, N, of f_u + q f_l over the box, which is at least `margin_n`; `None` where there is no proof.
+    pub(crate) fn least_sum_of_slopes(&self, q: f64, margin_n: f64, throttle: ThrottleBox) -> Option<f64> {
+        let [f_u, f_l] = &self.thrust;
+        let margin = Bivariate::from_terms(&[(0, 0)], &[-margin_n]);
+        let sum = f_u
+            .plus(Interval::exact(q), f_l)
+            .plus(Interval::exact(1.0), &margin);
+        sum.prove_positive(throttle).ok().map(|least| least + margin_n)
+    }
+
+    /// An upper bound of |f_uu| + 2 |f_ul| + |f_ll| over the box, N.
+    pub(crate) fn largest_curvature(&self, throttle: ThrottleBox) -> f64 {
+        let [f_u, f_l] = &self.thrust;
+        let most = |slope: Bivariate| slope.largest_magnitude(throttle);
+        most(f_u.by_u()) + 2.0 * most(f_u.by_l()) + most(f_l.by_l())
     }
 
     /// det J at the throttles (u, l), N N m.

@@ -91,9 +91,9 @@ impl PairMap {
             Kind::Pair(pair) => return PairMap::new(pair, throttle),
             Kind::SingleRotor(rotor) => &rotor.alone,
         };
-        let terms = |[a1, a2, a3]: &[f64; 3]| [*a3, 0.0, 0.0, 0.0, *a2, 0.0, 0.0, *a1, 0.0];
+        let [thrust_n, torque_nm] = [*thrust_n, *torque_nm].map(RotorAlone::in_cubic_terms);
         let range = [throttle.min, throttle.max];
-        Self::of(Basis::Cubic, &terms(thrust_n), &terms(torque_nm), range)
+        Self::of(Basis::Cubic, &thrust_n, &torque_nm, range)
     }
 
     /// The map of these coefficients, N and N m, one per term of the basis, over a range of throttle.

@@ -156,6 +156,13 @@ impl Bivariate {
         Ok(bound)
     }
 
+    /// An upper bound of the polynomial's magnitude on the box.
+    pub(crate) fn largest_magnitude(&self, throttle: ThrottleBox) -> f64 {
+        let bernstein = self.bernstein(throttle);
+        let coefficients = bernstein.coefficients.iter().flatten();
+        coefficients.fold(0.0, |most, c| most.max(c.magnitude()))
+    }
+
     /// De Casteljau at one half on every row of Bernstein coefficients: those of both halves.
     fn split(self) -> [Self; 2] {
         let (first, second) = self

@@ -80,6 +80,8 @@ impl Key {
 /// What a key holds.
 #[derive(Clone, Copy, Debug)]
 pub enum ValueKind {
+    /// True or false.
+    Flag,
     /// Any text.
     Text,
     /// A list of texts.
@@ -149,6 +151,7 @@ impl ValueKind {
             false => format!("{least} to {most}"),
         };
         match self {
+            ValueKind::Flag => "true or false".to_owned(),
             ValueKind::Text => "text".to_owned(),
             ValueKind::Texts => "list of texts".to_owned(),
             ValueKind::Name => "lower-case letters and digits, joined by `-` or `_`".to_owned(),

@@ -69,6 +69,14 @@ pub(crate) trait Read: Sized {
     fn read(item: &Item<'_>, faults: &mut Vec<Diagnostic>) -> Option<Self>;
 }
 
+impl Read for bool {
+    fn read(item: &Item<'_>, faults: &mut Vec<Diagnostic>) -> Option<Self> {
+        let value = item.value.as_bool();
+        faults.extend(value.is_none().then(|| item.wrong_type("true or false")));
+        value
+    }
+}
+
 impl Read for String {
     fn read(item: &Item<'_>, faults: &mut Vec<Diagnostic>) -> Option<Self> {
         let Some(text) = item.value.as_str() else {

@@ -2,7 +2,7 @@
 //! The fields of each type are named once, below.
 
 use mixer_rt::tables::{
-    Airmode, Border, Cell, ClosedForm, ClosedFormUnit, Facets, Grid, Knot, Law, LawPiece, Outline, Pair,
+    Airmode, Border, Cell, ClosedForm, ClosedFormUnit, Facets, Grid, Knot, Lag, Law, LawPiece, Outline, Pair,
     PairKind, Priorities, RotorAlone, Steep, ThrottleRange, Tolerance, Unit, Unlike,
 };
 use proc_macro2::{Ident, Literal, Span, TokenStream};
@@ -123,6 +123,7 @@ parts! {
     Facets { normal, bounds };
     Steep { facets, thrusts_n };
     Tolerance { efforts, wrench };
+    Lag { base, rise, coast };
 }
 
 impl Part for QuantityTable {

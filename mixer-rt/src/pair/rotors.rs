@@ -4,7 +4,7 @@ use crate::Health;
 
 /// Which rotors of a unit turn: the upper one, the lower one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Rotors([bool; 2]);
+pub struct Rotors([bool; 2]);
 
 impl Rotors {
     /// Both.

@@ -13,7 +13,7 @@ use mixer_rt::{Conditions, Health, Saturation, SetpointError, Wrench};
 mod tilted;
 #[rustfmt::skip]
 #[path = "../../../tests/golden/isae-x8.rs"]
-mod x8;
+pub mod x8;
 
 pub const AIRMODES: [Airmode; 3] = [Airmode::Disabled, Airmode::RollPitch, Airmode::RollPitchYaw];
 

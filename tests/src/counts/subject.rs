@@ -4,6 +4,8 @@ use crate::firmware::Variant;
 
 /// [`Subject::mixer`] that is called from C.
 pub(super) const C_INTERFACE: &str = "c-interface";
+/// [`Subject::mixer`] with rotors under way.
+const DYNAMIC: &str = "dynamic";
 /// [`Subject::mixer`] with rotors out.
 const ONE_OUT: &str = "one-rotor-out";
 const TWO_OUT: &str = "two-rotors-out";
@@ -11,7 +13,7 @@ const TWO_OUT: &str = "two-rotors-out";
 /// A mixer of an airframe.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Subject {
-    /// `coaxial`; the same as a library for C: `c-interface`; with one or two rotors out, at random
+    /// `coaxial`; the same as a library for C: `c-interface`; with rotors under way: `dynamic`; with one or two rotors out, at random
     /// channels: `one-rotor-out`, `two-rotors-out`; or a baseline: `conventional`, `sequential`,
     /// `wls`.
     pub mixer: String,
@@ -57,11 +59,11 @@ impl Subject {
 }
 
 /// The subjects that every run of the tests compares: all airframes, and on the X8 the mixers of
-/// isolated rotors, one rotor out, and the library for C.
+/// isolated rotors, one rotor out, the library for C, and rotors under way.
 pub fn compared(airframes: &[String]) -> Vec<Subject> {
     let airframes = airframes.iter().map(|airframe| Subject::new("coaxial", airframe));
     let others =
-        ["conventional", "sequential", ONE_OUT, C_INTERFACE].map(|mixer| Subject::new(mixer, "isae-x8"));
+        ["conventional", "sequential", ONE_OUT, C_INTERFACE, DYNAMIC].map(|mixer| Subject::new(mixer, "isae-x8"));
     airframes.chain(others).collect()
 }
 
@@ -77,7 +79,7 @@ pub fn all(airframes: &[String]) -> Vec<Subject> {
     let mut subjects = compared(airframes);
     subjects.push(Subject::new("wls", "isae-x8"));
     for airframe in ["px4-y6", "px4-x12"] {
-        subjects.extend(["conventional", "sequential", "wls"].map(|mixer| Subject::new(mixer, airframe)));
+        subjects.extend(["conventional", "sequential", "wls", DYNAMIC].map(|mixer| Subject::new(mixer, airframe)));
     }
     subjects.push(Subject::new(TWO_OUT, "isae-x8"));
     for airframe in ["px4-y6", "px4-x12", "regular-8", "tilted-6", "tilted-8"] {

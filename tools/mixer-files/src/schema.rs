@@ -49,6 +49,7 @@ fn property(key: &Key) -> Value {
     let number = || json!({ "type": "number" });
     let channel = || json!({ "type": "integer", "minimum": 0 });
     let mut property = match key.kind {
+        ValueKind::Flag => json!({ "type": "boolean" }),
         ValueKind::Text => json!({ "type": "string" }),
         ValueKind::Texts => json!({ "type": "array", "items": { "type": "string" } }),
         ValueKind::Name => json!({ "type": "string", "pattern": "^[a-z][a-z0-9]*([-_][a-z0-9]+)*$" }),
