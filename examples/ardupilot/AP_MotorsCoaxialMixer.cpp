@@ -61,11 +61,25 @@ void AP_MotorsCoaxialMixer::output_armed_stabilizing()
         throttle * ISAE_X8_ARDUPILOT_THRUST_N,
     };
     isae_x8_mix_t mix;
-    if (isae_x8_mix_in(&setpoint, &_conditions, &mix) == MIXER_OK) {
+    if (mix_in_flight(setpoint, mix) == MIXER_OK) {
         mixed(mix, throttle);
     } else {
         refused();
     }
+}
+
+// The throttles that go out: where the airframe file has the rotors' lag, those of rotors that are under way.
+int AP_MotorsCoaxialMixer::mix_in_flight(const mixer_wrench_t &setpoint, isae_x8_mix_t &mix)
+{
+#ifdef ISAE_X8_ROTOR_LAG_S
+    // On the ground ArduPilot turns the rotors itself; what they did in a pause nobody knows.
+    if (_spool_state == SpoolState::GROUND_IDLE || _step_s > PATIENCE_S) {
+        _rotors = {};
+    }
+    return isae_x8_mix_dynamic(&_rotors, &setpoint, &_conditions, _step_s, &mix);
+#else
+    return isae_x8_mix_in(&setpoint, &_conditions, &mix);
+#endif
 }
 
 // Voltage of the battery that ArduPilot's own compensation has (MOT_BAT_IDX), 0 where it has none. It is that under load, as on
@@ -162,6 +176,9 @@ void AP_MotorsCoaxialMixer::stopped()
         _thrust_rpyt_out[i] = 0.0f;
     }
     _throttle_out = 0.0f;
+#ifdef ISAE_X8_ROTOR_LAG_S
+    _rotors = {};
+#endif
 }
 
 void AP_MotorsCoaxialMixer::output_to_motors()

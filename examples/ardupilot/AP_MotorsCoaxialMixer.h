@@ -36,6 +36,7 @@ private:
     float measured_voltage() const;
     void update_conditions();
     void tell_voltage();
+    int mix_in_flight(const mixer_wrench_t &setpoint, isae_x8_mix_t &mix);
     void mixed(const isae_x8_mix_t &mix, float throttle);
     void refused();
     void stopped();
@@ -54,6 +55,10 @@ private:
     static constexpr bool NEEDS_VOLTAGE = ISAE_X8_MAX_V > 0.0f;
 
     float _throttle[ISAE_X8_CHANNELS] {};
+#ifdef ISAE_X8_ROTOR_LAG_S
+    // How fast the rotors turn, by what they were given.
+    isae_x8_state_t _rotors {};
+#endif
     // The last voltage and density that were measured: until then those of the bench, which NAN stands for.
     mixer_conditions_t _conditions {ISAE_X8_REFERENCE_V, NAN};
     // Hz: that of ArduPilot's own compensation (AP_MOTORS_BATT_VOLT_FILT_HZ).

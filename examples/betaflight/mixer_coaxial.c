@@ -201,6 +201,31 @@ static float thrustOfStick(const float stick)
     return expo <= 1.0f ? ((1.0f - expo) + expo * stick) * stick : ((2.0f - expo) + (expo - 1.0f) * stick) * stick * stick;
 }
 
+// The throttles that go out: where the airframe file has the rotors' lag, those of rotors that are under way.
+static int mixInFlight(const mixer_wrench_t *setpoint, isae_x8_mix_t *mix)
+{
+#ifdef ISAE_X8_ROTOR_LAG_S
+    // At rest until the vehicle is armed.
+    static const isae_x8_state_t rest = { { 0.0f } };
+    static isae_x8_state_t rotors;
+    if (!ARMING_FLAG(ARMED)) {
+        rotors = rest;
+    }
+#endif
+#if defined(COAXIAL_MIXER_HEALTH) && defined(USE_DSHOT_TELEMETRY)
+    motorsOut = standingMotors();
+#ifdef ISAE_X8_ROTOR_LAG_S
+    return isae_x8_mix_dynamic_with_health(&rotors, setpoint, &conditions, motorsOut, pidGetDT(), mix);
+#else
+    return isae_x8_mix_in_with_health(setpoint, &conditions, motorsOut, mix);
+#endif
+#elif defined(ISAE_X8_ROTOR_LAG_S)
+    return isae_x8_mix_dynamic(&rotors, setpoint, &conditions, pidGetDT(), mix);
+#else
+    return isae_x8_mix_in(setpoint, &conditions, mix);
+#endif
+}
+
 void coaxialMixerApply(float roll, float pitch, float yaw, float throttle, bool isAirmode)
 {
     // Throttle 0 and 1 of the airframe as DShot or in microseconds. They hold for a flight: a profile that is chosen in it may have
@@ -222,12 +247,7 @@ void coaxialMixerApply(float roll, float pitch, float yaw, float throttle, bool 
         thrustOfStick(throttle) * ISAE_X8_BETAFLIGHT_THRUST_N,
     };
     isae_x8_mix_t mix;
-#if defined(COAXIAL_MIXER_HEALTH) && defined(USE_DSHOT_TELEMETRY)
-    motorsOut = standingMotors();
-    const int status = isae_x8_mix_in_with_health(&setpoint, &conditions, motorsOut, &mix);
-#else
-    const int status = isae_x8_mix_in(&setpoint, &conditions, &mix);
-#endif
+    const int status = mixInFlight(&setpoint, &mix);
     if (status == MIXER_OK) {
         held = 0.0f;
         for (int i = 0; i < ISAE_X8_CHANNELS; i++) {

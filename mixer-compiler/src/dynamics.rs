@@ -19,30 +19,19 @@
 use mixer_rt::tables::Lag;
 use serde::Serialize;
 
-use crate::airframe::{Airframe, GRAVITY, Kind, View};
+use crate::airframe::{Airframe, GRAVITY, Kind};
 use crate::flywheel::{Flywheel, exponent, ohmic_share};
 use crate::model::injectivity::EnclosedPairMap;
 use crate::model::polynomial::ThrottleBox;
 use crate::model::{PairMap, equal_throttle, maps};
+use crate::view::View;
+
+/// What is said of an airframe without `mix_dynamic`.
+pub const UNPROVEN: &str = "no mix_dynamic: its thrust is not proven to rise with both throttles over the whole range; a higher throttle.min may do";
 
 /// Share of an estimated lag that is taken: half of the true one harms nothing, twice of it may be worse than none, and
 /// the estimate is within a factor of two.
 const OF_ESTIMATE: f64 = 0.7;
-
-/// Share of the largest thrust by which slopes in f64 and those that are rounded to f32 may differ.
-const ROUNDING: f64 = 1e-5;
-
-/// Where a lag is from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Origin {
-    /// `[vehicle] rotor_lag_s`.
-    Lag,
-    /// `[vehicle] rotor_inertia_kg_m2`.
-    Inertia,
-    /// Seven tenths of the estimate by the largest thrust.
-    Estimate,
-}
 
 /// How the rotors of one kind of unit follow.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -52,95 +41,59 @@ pub struct Dynamics {
     pub lag_s: f64,
     /// Throttle of all rotors there.
     pub throttle: f64,
-    /// Where it is from.
-    pub origin: Origin,
-    /// Whether controllers brake.
-    pub brakes: bool,
-    /// Ohmic share s at full throttle.
-    pub ohmic_share: f64,
+    /// Whether it is seven tenths of an estimate by the largest thrust, as the file has neither lag nor inertia.
+    pub is_estimated: bool,
     /// Proven: least f_u + q f_l over the range, N; of a single rotor, the slope of its thrust.
     pub least_slope_n: f64,
     /// Proven: largest shift over the square of the largest distance of a rotor's throttle from that of its speed.
     pub shift_per_square: f64,
+    /// The table.
+    #[serde(skip)]
+    pub(crate) lag: Lag,
 }
 
 impl Dynamics {
     /// Those of each kind of unit; `None` where the slopes are not proven positive for all.
-    pub fn of(airframe: &Airframe) -> Option<Vec<Dynamics>> {
+    pub(crate) fn of(airframe: &Airframe, most_n: f64) -> Option<Vec<Dynamics>> {
         let maps = maps(airframe);
-        let full_n: f64 = airframe
-            .units
-            .iter()
-            .zip(&maps)
-            .map(|(unit, map)| -unit.axis[2] * map.efforts([airframe.throttle.max; 2])[0])
-            .sum();
-        let lifts = |thrust_n: f64| {
-            equal_throttle(airframe, &maps, thrust_n).map(|throttle| (throttle, thrust_n / GRAVITY))
-        };
-        let (throttle, mass_kg) = airframe
-            .weight_n()
-            .and_then(lifts)
-            .or_else(|| lifts(0.5 * full_n))?;
+        let at = |thrust_n: f64| Some((equal_throttle(airframe, &maps, thrust_n)?, thrust_n / GRAVITY));
+        let (throttle, mass_kg) = airframe.weight_n().and_then(at).or_else(|| at(0.5 * most_n))?;
         let vehicle = airframe.vehicle.as_ref();
         let inertia = vehicle.and_then(|vehicle| vehicle.rotor_inertia_kg_m2);
-        let rotors = Flywheel::of_mass(airframe, mass_kg, inertia);
+        let stated_s = vehicle.and_then(|vehicle| vehicle.rotor_lag_s);
+        let is_estimated = inertia.or(stated_s).is_none();
+        let of_estimate = if is_estimated { OF_ESTIMATE } else { 1.0 };
         let of_kind = |(view, rotor): (View<'_, Kind<'_>>, Option<Flywheel>)| {
-            let (lag_s, origin) = match (vehicle.and_then(|vehicle| vehicle.rotor_lag_s), inertia) {
-                (Some(lag_s), _) => (lag_s, Origin::Lag),
-                (None, Some(_)) => (rotor?.lag_s(), Origin::Inertia),
-                (None, None) => (OF_ESTIMATE * rotor?.lag_s(), Origin::Estimate),
-            };
-            let share = ohmic_share(exponent(&view), 1.0);
-            let (least_slope_n, shift_per_square) = proven(&view, share)?;
+            let lag_s = stated_s.or_else(|| Some(of_estimate * rotor?.lag_s()))?;
+            let s = ohmic_share(exponent(&view), 1.0);
+            let root = |throttle: f64| ((1.0 - s) * (1.0 - s) + 4.0 * s * throttle).sqrt();
+            let time_s = lag_s * root(throttle);
+            let coast = [time_s, 1.0 - s].map(|factor| (factor * (1.0 - s) / (2.0 * s)) as f32);
+            // Below half of idle the mixer shifts nothing.
+            let ratio = root(view.throttle.max) / root(0.5 * view.throttle.min);
+            let (least_slope_n, shift_per_square) = EnclosedPairMap::of_kind(view.of).proven_slopes(
+                ratio,
+                ThrottleBox {
+                    low: view.throttle.min,
+                    high: view.throttle.max,
+                },
+            )?;
             Some(Dynamics {
                 lag_s,
                 throttle,
-                origin,
-                brakes: vehicle.is_none_or(|vehicle| vehicle.rotor_brakes),
-                ohmic_share: share,
+                is_estimated,
                 least_slope_n,
                 shift_per_square,
+                lag: Lag {
+                    base: ((1.0 - s) * (1.0 - s) / (time_s * time_s)) as f32,
+                    rise: (4.0 * s / (time_s * time_s)) as f32,
+                    coast: vehicle
+                        .is_some_and(|vehicle| !vehicle.rotor_brakes)
+                        .then_some(coast),
+                },
             })
         };
+        let rotors = Flywheel::of_mass(airframe, mass_kg, inertia);
         airframe.views().zip(rotors).map(of_kind).collect()
     }
-
-    /// The table.
-    pub(crate) fn lag(&self) -> Lag {
-        let s = self.ohmic_share;
-        let time_s = self.lag_s * root(s, self.throttle);
-        let per_square = 1.0 / (time_s * time_s);
-        let coast = [(1.0 - s) * time_s / (2.0 * s), (1.0 - s) * (1.0 - s) / (2.0 * s)];
-        Lag {
-            base: ((1.0 - s) * (1.0 - s) * per_square) as f32,
-            rise: (4.0 * s * per_square) as f32,
-            coast: (!self.brakes).then_some(coast.map(|x| x as f32)),
-        }
-    }
-}
-
-/// t / lag at a throttle.
-fn root(share: f64, throttle: f64) -> f64 {
-    ((1.0 - share) * (1.0 - share) + 4.0 * share * throttle).sqrt()
-}
-
-/// The least slope, N, and the largest shift over the square of the distance.
-fn proven(view: &View<'_, Kind<'_>>, share: f64) -> Option<(f64, f64)> {
-    let throttle = ThrottleBox {
-        low: view.throttle.min,
-        high: view.throttle.max,
-    };
-    let margin_n = ROUNDING * PairMap::of_kind(view.of, &view.throttle).scale()[0];
-    let map = match view.of {
-        Kind::Pair(pair) => EnclosedPairMap::new(pair),
-        Kind::SingleRotor(rotor) => EnclosedPairMap::of_rotor(&rotor.alone),
-    };
-    // Below half of idle the mixer shifts nothing.
-    let ratio = root(share, throttle.high) / root(share, 0.5 * throttle.low);
-    let least = [ratio, 1.0 / ratio].map(|q| map.least_sum_of_slopes(q, margin_n, throttle));
-    let least_n = least
-        .into_iter()
-        .try_fold(f64::INFINITY, |least, proven| Some(least.min(proven?)))?;
-    let sum_n = map.least_sum_of_slopes(1.0, margin_n, throttle)?;
-    Some((least_n, 0.5 * map.largest_curvature(throttle) / sum_n))
 }

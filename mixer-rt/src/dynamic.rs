@@ -49,6 +49,7 @@ use crate::{clamp, divided, larger, rolled, sqrt};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[repr(transparent)]
 pub struct RotorState<const CHANNELS: usize> {
     /// Per output channel the throttle that would hold the rotor's present speed, 0 to 1. What is outside is taken as the
     /// nearest within, NaN as either end.

@@ -12,7 +12,7 @@
 //! An invertible linear change of the efforts changes nothing about injectivity. All signs are
 //! proven by [`Bivariate`].
 
-use crate::airframe::{Basis, Pair, RotorAlone, value_of_terms};
+use crate::airframe::{Basis, Kind, Pair, RotorAlone, value_of_terms};
 use crate::bounds::interval::Interval;
 use crate::diagnostic::{Code, Diagnostic, rounded};
 use crate::model::PairMap;
@@ -55,6 +55,9 @@ pub enum Fold {
     /// det J > 0 was proven, but no combination of the efforts is a P-matrix.
     NotGlobal,
 }
+
+/// Share of the largest thrust by which slopes in f64 and those that are rounded to f32 may differ.
+const ROUNDING: f64 = 1e-5;
 
 /// Factors a and b that are tried; the first works for ordinary pairs.
 const COMBINATIONS: [f64; 6] = [0.0, 0.5, 1.0, 2.0, 4.0, 0.25];
@@ -128,27 +131,35 @@ impl EnclosedPairMap {
         }
     }
 
-    /// The map of a rotor alone, constant along the lower throttle.
-    pub(crate) fn of_rotor(rotor: &RotorAlone) -> Self {
-        let [thrust_n, torque_nm] = [rotor.thrust_n, rotor.torque_nm].map(RotorAlone::in_cubic_terms);
-        Self::of(Basis::Cubic, &thrust_n, &torque_nm)
+    /// The map of a unit; that of a single rotor is constant along the lower throttle.
+    pub(crate) fn of_kind(kind: Kind<'_>) -> Self {
+        match kind {
+            Kind::Pair(pair) => Self::new(pair),
+            Kind::SingleRotor(rotor) => {
+                let [f, q] = [rotor.alone.thrust_n, rotor.alone.torque_nm].map(RotorAlone::in_cubic_terms);
+                Self::of(Basis::Cubic, &f, &q)
+            }
+        }
     }
 
-    /// A proven lower bound, N, of f_u + q f_l over the box, which is at least `margin_n`; `None` where there is no proof.
-    pub(crate) fn least_sum_of_slopes(&self, q: f64, margin_n: f64, throttle: ThrottleBox) -> Option<f64> {
+    /// Lower bounds over the box: of f_u + q f_l, N, for q from 1 / `ratio` to `ratio`, and from it an upper one of the rest of
+    /// f after its tangent, over f_u + f_l and the square of the larger change of a throttle; `None` where there is no proof.
+    pub(crate) fn proven_slopes(&self, ratio: f64, throttle: ThrottleBox) -> Option<(f64, f64)> {
         let [f_u, f_l] = &self.thrust;
+        let margin_n = ROUNDING * self.scale[0];
         let margin = Bivariate::from_terms(&[(0, 0)], &[-margin_n]);
-        let sum = f_u
-            .plus(Interval::exact(q), f_l)
-            .plus(Interval::exact(1.0), &margin);
-        sum.prove_positive(throttle).ok().map(|least| least + margin_n)
-    }
-
-    /// An upper bound of |f_uu| + 2 |f_ul| + |f_ll| over the box, N.
-    pub(crate) fn largest_curvature(&self, throttle: ThrottleBox) -> f64 {
-        let [f_u, f_l] = &self.thrust;
+        let least = |q: f64| {
+            let sum = margin
+                .plus(Interval::exact(1.0), f_u)
+                .plus(Interval::exact(q), f_l);
+            Some(margin_n + sum.prove_positive(throttle).ok()?)
+        };
         let most = |slope: Bivariate| slope.largest_magnitude(throttle);
-        most(f_u.by_u()) + 2.0 * most(f_u.by_l()) + most(f_l.by_l())
+        let curvature_n = most(f_u.by_u()) + 2.0 * most(f_u.by_l()) + most(f_l.by_l());
+        Some((
+            least(ratio)?.min(least(1.0 / ratio)?),
+            0.5 * curvature_n / least(1.0)?,
+        ))
     }
 
     /// det J at the throttles (u, l), N N m.

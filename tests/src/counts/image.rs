@@ -149,6 +149,7 @@ fn library(toolchain: &Toolchain, airframe: &str) -> Result<(PathBuf, String), S
     let options = Options {
         target: Some(TARGET),
         health: false,
+        dynamic: false,
     };
     let files = mixer_files::library::library(&[compiled], &options, |note| eprintln!("{note}"))
         .map_err(|error| error.to_string())?;

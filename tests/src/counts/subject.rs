@@ -62,8 +62,8 @@ impl Subject {
 /// isolated rotors, one rotor out, the library for C, and rotors under way.
 pub fn compared(airframes: &[String]) -> Vec<Subject> {
     let airframes = airframes.iter().map(|airframe| Subject::new("coaxial", airframe));
-    let others =
-        ["conventional", "sequential", ONE_OUT, C_INTERFACE, DYNAMIC].map(|mixer| Subject::new(mixer, "isae-x8"));
+    let others = ["conventional", "sequential", ONE_OUT, C_INTERFACE, DYNAMIC]
+        .map(|mixer| Subject::new(mixer, "isae-x8"));
     airframes.chain(others).collect()
 }
 
@@ -79,7 +79,9 @@ pub fn all(airframes: &[String]) -> Vec<Subject> {
     let mut subjects = compared(airframes);
     subjects.push(Subject::new("wls", "isae-x8"));
     for airframe in ["px4-y6", "px4-x12"] {
-        subjects.extend(["conventional", "sequential", "wls", DYNAMIC].map(|mixer| Subject::new(mixer, airframe)));
+        subjects.extend(
+            ["conventional", "sequential", "wls", DYNAMIC].map(|mixer| Subject::new(mixer, airframe)),
+        );
     }
     subjects.push(Subject::new(TWO_OUT, "isae-x8"));
     for airframe in ["px4-y6", "px4-x12", "regular-8", "tilted-6", "tilted-8"] {

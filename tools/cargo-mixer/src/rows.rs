@@ -8,6 +8,7 @@ use std::str::FromStr;
 
 use mixer_compiler::Compiled;
 use mixer_compiler::airframe::Airframe;
+use mixer_compiler::tables::AnyState;
 use mixer_rt::Health;
 
 mod read;
@@ -41,8 +42,11 @@ pub struct Task<T> {
     /// The columns that it gives.
     pub given: fn(&Airframe) -> Vec<String>,
     /// Its row, a value per column with commas between, or what is wrong.
-    pub answer: fn(&Compiled, Health, &Row<T>) -> Result<String, String>,
+    pub answer: fn(&Compiled, Health, &Row<T>, &mut Memory) -> Result<String, String>,
 }
+
+/// What rows before leave to the next one: their last time, s, and the rotors that are under way.
+pub type Memory = Option<(f32, AnyState)>;
 
 /// The outputs of an airframe as columns.
 pub(crate) fn throttles(airframe: &Airframe) -> Vec<String> {
@@ -186,8 +190,11 @@ fn answer_rows<T: FromStr>(
         written.map_err(Stopped::Output)
     };
     write(&(task.given)(&compiled.airframe).join(","))?;
+    let mut memory = None;
     while let Some((line, row)) = rows.read()? {
-        let answer = |row| (task.answer)(compiled, health, &row).map_err(|message| BadLine { line, message });
+        let answer = |row| {
+            (task.answer)(compiled, health, &row, &mut memory).map_err(|message| BadLine { line, message })
+        };
         match row.and_then(answer) {
             Ok(text) => write(&text)?,
             Err(line) => bad_line(line),

@@ -6,6 +6,7 @@ use mixer_compiler::Compiled;
 use mixer_compiler::airframe::{Kind, Uncertainty};
 use mixer_compiler::atmosphere::TOP_M;
 use mixer_compiler::diagnostic::rounded_up;
+use mixer_compiler::dynamics::UNPROVEN;
 use mixer_compiler::flywheel::Flywheel;
 use mixer_compiler::hover::HoverAt;
 use mixer_compiler::model::PairMap;
@@ -127,6 +128,7 @@ pub fn facts(compiled: &Compiled) -> Vec<Fact> {
     let mut list = List(Vec::new());
     gives(&mut list, compiled);
     hover(&mut list, compiled);
+    dynamics(&mut list, compiled);
     power(&mut list, compiled);
     model(&mut list, compiled);
     voltage(&mut list, compiled);
@@ -336,6 +338,31 @@ fn hover(list: &mut List, compiled: &Compiled) {
         each.collect::<Vec<_>>().join(", ")
     );
     list.say("hover, rotor out", "", "", words).in_verdict();
+}
+
+/// How rotors follow, for `mix_dynamic`.
+fn dynamics(list: &mut List, compiled: &Compiled) {
+    let of_kinds = compiled.dynamics.as_deref().unwrap_or_default();
+    let each = compiled.airframe.views().zip(of_kinds).map(|(view, of)| {
+        let origin = match of.is_estimated {
+            true => {
+                "seven tenths of an estimate; measured, it keeps the thrust in steps of yaw (docs/bench.md)"
+            }
+            false => "as the file says",
+        };
+        let (throttle, shift) = (of.throttle, of.shift_per_square);
+        let words = format!(
+            " at throttle {throttle:.2}, {origin}; shifts throttles by {shift:.1} d^2 at most, rotors d off"
+        );
+        (view.of, format!("{:.3}", of.lag_s), words)
+    });
+    let each: Vec<_> = each.collect();
+    match each.len() {
+        0 => list.say("rotors' lag", "", "", UNPROVEN),
+        kinds => list.say_of_each("rotors' lag", "s", kinds, &each),
+    }
+    .json("dynamics", one_or_list(of_kinds))
+    .in_verdict();
 }
 
 /// A rotor out, and power in level flight.

@@ -19,7 +19,7 @@
 //!
 //! # let text = std::fs::read_to_string("../../airframes/isae-x8.toml").unwrap();
 //! let airframe = Airframe::new(&Source::new("isae-x8.toml", text)).unwrap();
-//! let options = Options { target: Some("thumbv7em-none-eabihf"), health: false };
+//! let options = Options { target: Some("thumbv7em-none-eabihf"), health: false, dynamic: false };
 //! for file in library(&[airframe], &options, |note| eprintln!("{note}")).unwrap() {
 //!     std::fs::write(file.name, file.bytes).unwrap();
 //! }
@@ -41,6 +41,8 @@ pub use error::Error;
 
 use build::Build;
 use header::Header;
+use interface::Object;
+use mixer_compiler::dynamics::UNPROVEN;
 use object::{Member, Symbols};
 use toolchain::Toolchain;
 
@@ -51,6 +53,8 @@ pub struct Options<'a> {
     pub target: Option<&'a str>,
     /// Whether `M_mix_with_health`, for rotors that are out, is a second object of the archive.
     pub health: bool,
+    /// Whether `M_mix_dynamic`, for rotors that are under way, is a further one.
+    pub dynamic: bool,
 }
 
 /// A file of a library.
@@ -75,15 +79,16 @@ pub fn library(
 ) -> Result<Vec<File>, Error> {
     names::check(airframes).map_err(Error::Name)?;
     let toolchain = Toolchain::find(options.target).map_err(Error::Toolchain)?;
-    files(airframes, &toolchain, options.health, note).map_err(Error::Build)
+    files(airframes, &toolchain, options, note).map_err(Error::Build)
 }
 
 fn files(
     airframes: &[Airframe],
     toolchain: &Toolchain,
-    health: bool,
+    options: &Options<'_>,
     note: impl Fn(&str),
 ) -> Result<Vec<File>, String> {
+    let &Options { health, dynamic, .. } = options;
     let build = Build::new(toolchain, note)?;
     let text = |name: String, text: String| File {
         name,
@@ -92,14 +97,21 @@ fn files(
     let mut files = vec![text("coaxial_mixer.h".to_owned(), header::shared())];
     for airframe in airframes {
         let module = &airframe.module;
-        let mut members = Vec::new();
-        for is_second in [false, true].into_iter().take(1 + usize::from(health)) {
-            members.push(member(&build, airframe, is_second)?);
+        if dynamic && airframe.compiled.dynamics.is_none() {
+            return Err(format!("{}: {UNPROVEN}", airframe.file));
         }
+        let all = [(false, false), (true, false), (false, true), (true, true)];
+        let objects = all.map(|(health, dynamic)| Object { health, dynamic });
+        let asked = |of: &Object| of.health <= health && of.dynamic <= dynamic;
+        let members = objects.into_iter().filter(asked);
+        let members: Vec<Member> = members
+            .map(|object| member(&build, airframe, object))
+            .collect::<Result<_, _>>()?;
         let header = Header {
             airframe,
             target: &toolchain.target,
             health,
+            dynamic,
         };
         files.push(File {
             name: format!("lib{module}.a"),
@@ -109,20 +121,18 @@ fn files(
         files.push(text(format!("{module}.cmake"), header.cmake()));
         files.push(text(
             format!("{module}_selftest.c"),
-            selftest::text(airframe, health),
+            selftest::text(airframe, health, dynamic),
         ));
     }
     Ok(files)
 }
 
 /// The object of the mixer, looked into.
-fn member(build: &Build<'_>, airframe: &Airframe, health: bool) -> Result<Member, String> {
-    let name = if health {
-        format!("{}_health", airframe.module)
-    } else {
-        airframe.module.clone()
-    };
-    let rust = interface::rust(airframe, health);
+fn member(build: &Build<'_>, airframe: &Airframe, object: Object) -> Result<Member, String> {
+    let dynamic = if object.dynamic { "_dynamic" } else { "" };
+    let health = if object.health { "_health" } else { "" };
+    let name = format!("{}{dynamic}{health}", airframe.module);
+    let rust = interface::rust(airframe, object);
     let fault = |fault: String| format!("the object of {} for {}: {fault}", airframe.file, build.target());
     // The run-time functions that the object calls; they may call others in turn.
     let mut calls: Vec<String> = Vec::new();
@@ -135,7 +145,7 @@ fn member(build: &Build<'_>, airframe: &Airframe, health: bool) -> Result<Member
         calls.extend(found);
         if calls.len() == known {
             let is_linked = |name: &str| support::is_linked(build.target(), name);
-            let functions = interface::functions(&airframe.module, health).to_vec();
+            let functions = interface::functions(&airframe.module, object);
             symbols.check(&functions, is_linked).map_err(fault)?;
             return Ok(Member {
                 name: format!("{name}.o"),

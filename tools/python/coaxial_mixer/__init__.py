@@ -268,6 +268,30 @@ class Mixer(_Airframe):
         """
         return Mix(*self._native.mix(self._rows(np.float32, wrenches, _WRENCH, volts, density, failed)))
 
+    def mix_dynamic(
+        self,
+        wrenches: npt.ArrayLike,
+        time_s: npt.ArrayLike | None = None,
+        volts: npt.ArrayLike | None = None,
+        failed: Failed = (),
+        density: npt.ArrayLike | None = None,
+    ) -> Mix:
+        """The throttles for the wrenches (N, 4) of one flight at times (N,), s, each after the one before, for rotors that are
+        under way.
+
+        The first row's rotors turn as it asks. A table with names has a column time_s. What is achieved, and saturation, are those of
+        :meth:`mix`, as are the other arguments.
+        """
+        if time_s is not None:
+            if _names(wrenches) is not None:
+                raise MixerError("time_s beside a table with names: a column of it")
+            rows = np.asarray(wrenches, np.float32)
+            times = np.asarray(time_s, np.float32)
+            if rows.ndim != 2 or times.shape != rows.shape[:1]:
+                raise MixerError(f"time_s of shape {times.shape} for wrenches of shape {rows.shape}")
+            wrenches = np.column_stack([rows, times])
+        return Mix(*self._native.mix_dynamic(self._rows(np.float32, wrenches, [*_WRENCH, "time_s"], volts, density, failed)))
+
 
 class Conventional(_Airframe):
     """The mixer of today's flight stacks on an airframe: :func:`conventional` makes it."""

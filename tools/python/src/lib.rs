@@ -17,6 +17,7 @@ fn error(message: impl std::fmt::Display) -> PyErr {
 #[pymodule]
 mod _native {
     use std::fmt::Display;
+    use std::sync::{Mutex, PoisonError};
 
     use cargo_mixer::bench_args::parsed;
     use cargo_mixer::bench_files;
@@ -27,6 +28,7 @@ mod _native {
     use cargo_mixer::place::tables_or_airframe;
     use cargo_mixer::rows::{self, Row};
     use isolated_rotors::IsolatedTables;
+    use mixer_compiler::tables::AnyMix;
     use mixer_compiler::{Compiled, Source};
     use mixer_facts::Checked;
     use mixer_identify::refusal::Refusal;
@@ -108,6 +110,16 @@ mod _native {
         }
     }
 
+    impl Native {
+        fn mixed<'py>(&self, py: Python<'py>, mixed: Vec<AnyMix>) -> PyResult<Bound<'py, PyTuple>> {
+            let n = mixed.len();
+            let throttles = array(py, mixed.iter().flat_map(|mix| mix.0.clone()), [n, self.rotors()])?;
+            let achieved = array(py, mixed.iter().flat_map(|mix| mix.1.to_array()), [n, 4])?;
+            let saturation = array(py, mixed.iter().map(|mix| mix.2.bits()), [n])?;
+            (throttles, achieved, saturation).into_pyobject(py)
+        }
+    }
+
     #[pymethods]
     impl Native {
         #[new]
@@ -155,11 +167,17 @@ mod _native {
         /// Throttles, achieved wrenches, saturation.
         fn mix<'py>(&self, py: Python<'py>, rows: Rows<'py, f32>) -> PyResult<Bound<'py, PyTuple>> {
             let mixed = self.answers(py, rows, mix::mix)?;
-            let n = mixed.len();
-            let throttles = array(py, mixed.iter().flat_map(|mix| mix.0.clone()), [n, self.rotors()])?;
-            let achieved = array(py, mixed.iter().flat_map(|mix| mix.1.to_array()), [n, 4])?;
-            let saturation = array(py, mixed.iter().map(|mix| mix.2.bits()), [n])?;
-            (throttles, achieved, saturation).into_pyobject(py)
+            self.mixed(py, mixed)
+        }
+
+        /// The same of the rows of one flight, their times in the fifth column.
+        fn mix_dynamic<'py>(&self, py: Python<'py>, rows: Rows<'py, f32>) -> PyResult<Bound<'py, PyTuple>> {
+            let memory = Mutex::default();
+            let mixed = self.answers(py, rows, |compiled, health, row| {
+                let memory = &mut *memory.lock().unwrap_or_else(PoisonError::into_inner);
+                mix::mix_dynamic(compiled, health, row, memory)
+            })?;
+            self.mixed(py, mixed)
         }
 
         /// Throttles of the conventional mixer, and whether none was clipped.

@@ -34,6 +34,9 @@ pub struct LibraryArgs {
     /// Adds M_mix_with_health, for rotors that are out, as a second object of the archive
     #[arg(long)]
     health: bool,
+    /// Adds M_mix_dynamic, for rotors that are under way, as a further object of the archive
+    #[arg(long)]
+    dynamic: bool,
     /// The folder to write into; made where there is none
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
@@ -51,6 +54,7 @@ pub fn run(args: &LibraryArgs) -> Done {
     let options = Options {
         target: args.target.as_deref(),
         health: args.health,
+        dynamic: args.dynamic,
     };
     let note = |note: &str| {
         if stderr().is_terminal() {

@@ -30,7 +30,7 @@ pub struct WrenchArgs {
 pub const GIVEN: Task<f64> = Task {
     required: throttles,
     given: |_| WRENCH.map(str::to_owned).into(),
-    answer: |compiled, health, row| Ok(fields(wrench(compiled, health, row)?)),
+    answer: |compiled, health, row, _| Ok(fields(wrench(compiled, health, row)?)),
 };
 
 /// `[roll, pitch, yaw, thrust]` (N m, N) of a row of [`GIVEN`].

@@ -17,6 +17,8 @@ pub(crate) struct Header<'a> {
     pub(crate) target: &'a str,
     /// Whether rotors can be out.
     pub(crate) health: bool,
+    /// Whether they can be under way.
+    pub(crate) dynamic: bool,
 }
 
 /// `coaxial_mixer.h`.
@@ -109,6 +111,7 @@ impl Header<'_> {
                 ("VOLTAGE", &voltage),
                 ("DENSITY", &density),
                 ("HEALTH", &self.health()),
+                ("DYNAMIC", &self.dynamic()),
             ],
         )
     }
@@ -153,6 +156,32 @@ impl Header<'_> {
              int {module}_mix_in_with_health(const mixer_wrench_t *setpoint, const mixer_conditions_t *conditions,\n    \
              uint64_t failed, {module}_mix_t *out);\n\n"
         )
+    }
+
+    /// Rotors under way. Their lag is a constant where the file has one: code of flight stacks asks for it.
+    fn dynamic(&self) -> String {
+        if !self.dynamic {
+            return String::new();
+        }
+        let health = match self.health {
+            true => include_str!("templates/dynamic_health.h"),
+            false => "",
+        };
+        let known = self
+            .airframe
+            .compiled
+            .dynamics
+            .iter()
+            .flatten()
+            .find(|of| !of.is_estimated);
+        let lag = known.map(|of| format!("#define @PREFIX@_ROTOR_LAG_S {}\n", float(of.lag_s as f32)));
+        let text = include_str!("templates/dynamic.h").to_owned() + health;
+        let values: &[(&str, &dyn Display)] = &[
+            ("LAG", &lag.unwrap_or_default()),
+            ("M", &self.airframe.module),
+            ("PREFIX", &self.airframe.prefix()),
+        ];
+        fill(&fill(&text, values), values)
     }
 
     /// `M.cmake`.

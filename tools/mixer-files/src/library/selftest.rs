@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 
 use crate::vectors::{self, Vector};
 use mixer_compiler::Compiled;
+use mixer_compiler::tables::AnyState;
 use mixer_rt::{Conditions, Health, Wrench};
 
 use crate::library::airframe::Airframe;
@@ -14,7 +15,7 @@ use crate::library::header::{VERSION, fill};
 const EVERY: usize = 3;
 
 /// `M_selftest.c`.
-pub(crate) fn text(airframe: &Airframe, health: bool) -> String {
+pub(crate) fn text(airframe: &Airframe, health: bool, dynamic: bool) -> String {
     let Airframe { compiled, module, .. } = airframe;
     let rows = rows(compiled);
     let mut table = String::new();
@@ -41,10 +42,46 @@ pub(crate) fn text(airframe: &Airframe, health: bool) -> String {
             ("FAILED", &field),
             ("CALL", &call),
             ("TABLE", &table),
+            (
+                "WORTH",
+                &if dynamic {
+                    worth(compiled, &rows)
+                } else {
+                    String::new()
+                },
+            ),
+            (
+                "MORE",
+                &if dynamic {
+                    include_str!("templates/dynamic.c").replace("@M@", module)
+                } else {
+                    String::new()
+                },
+            ),
             ("PREFIX", &airframe.prefix()),
             ("VERSION", &VERSION),
             ("M", module),
         ],
+    )
+}
+
+/// What the rotors are worth after all rows, from rest, each held for 4 ms.
+fn worth(compiled: &Compiled, rows: &[Vector]) -> String {
+    let mut state = AnyState::default();
+    for (wrench, conditions) in rows {
+        // One that is refused leaves the state as it was.
+        let _ = compiled
+            .tables
+            .mix_dynamic(&mut state, wrench, *conditions, Health::GOOD, 0.004);
+    }
+    let worth = &state.worth[..compiled.airframe.rotors()];
+    let bits: Vec<String> = worth
+        .iter()
+        .map(|worth| format!("{:#x}u", worth.to_bits()))
+        .collect();
+    format!(
+        "\n/* What the rotors are worth after all rows, each held for 4 ms. */\nstatic const uint32_t worth[] = {{{}}};\n",
+        bits.join(", ")
     )
 }
 

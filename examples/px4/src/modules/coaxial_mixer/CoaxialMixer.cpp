@@ -237,7 +237,7 @@ bool CoaxialMixer::mix_setpoint(const vehicle_torque_setpoint_s &torque)
 		return false;
 	}
 
-	if (mix(setpoint, mixed) != MIXER_OK) {
+	if (mix_in_flight(setpoint, torque.timestamp_sample, mixed) != MIXER_OK) {
 		++_refused;
 		return false;
 	}
@@ -257,6 +257,36 @@ int CoaxialMixer::mix(const mixer_wrench_t &setpoint, isae_x8_mix_t &out) const
 {
 	return _failed ? isae_x8_mix_in_with_health(&setpoint, &_conditions, _failed, &out)
 	       : isae_x8_mix_in(&setpoint, &_conditions, &out);
+}
+
+// The throttles that go out: where the airframe file has the rotors' lag, those of rotors that are under way. What is achieved
+// and the flags are those of steady speeds either way.
+int CoaxialMixer::mix_in_flight(const mixer_wrench_t &setpoint, hrt_abstime sample, isae_x8_mix_t &out)
+{
+#ifdef ISAE_X8_ROTOR_LAG_S
+	const hrt_abstime held = sample - _last_sample;
+	_last_sample = sample;
+
+	// Rotors begin at rest; what they did in a pause nobody knows.
+	if (!_mode.flag_armed || held > PATIENCE) {
+		_rotors = {};
+	}
+
+	const float held_s = 1e-6f * held;
+	const int status = _failed ? isae_x8_mix_dynamic_with_health(&_rotors, &setpoint, &_conditions, _failed, held_s, &out)
+			   : isae_x8_mix_dynamic(&_rotors, &setpoint, &_conditions, held_s, &out);
+
+	for (int i = 0; i < ISAE_X8_CHANNELS; ++i) {
+		if (_stopped & (1u << i)) {
+			_rotors.worth[i] = 0.f;
+		}
+	}
+
+	return status;
+#else
+	(void)sample;
+	return mix(setpoint, out);
+#endif
 }
 
 // Whether another module publishes the motors, too. It would be control_allocator, started later: PX4's own flies on.

@@ -72,6 +72,7 @@ private:
 	void update_failed(const mixer_wrench_t &setpoint);
 	bool mix_setpoint(const vehicle_torque_setpoint_s &torque);
 	int mix(const mixer_wrench_t &setpoint, isae_x8_mix_t &out) const;
+	int mix_in_flight(const mixer_wrench_t &setpoint, hrt_abstime sample, isae_x8_mix_t &out);
 	bool is_displaced();
 	void publish_motors(const float *throttle, hrt_abstime timestamp_sample);
 	void publish_status(const mixer_wrench_t &setpoint, const isae_x8_mix_t &mix);
@@ -110,6 +111,11 @@ private:
 	vehicle_thrust_setpoint_s _thrust{};
 	vehicle_control_mode_s _mode{};
 	hrt_abstime _last_mix{0};
+#ifdef ISAE_X8_ROTOR_LAG_S
+	// How fast the rotors turn, by what they were given.
+	isae_x8_state_t _rotors{};
+	hrt_abstime _last_sample{0};
+#endif
 	hrt_abstime _last_status{0};
 	// The voltage, filtered, and the density that were measured last: until then those of the bench, which NAN stands for.
 	mixer_conditions_t _conditions{ISAE_X8_REFERENCE_V, NAN};

@@ -120,6 +120,11 @@ impl Stack {
         fs::write(&airframe, format!("{text}\n{air}")).unwrap();
         let arguments = [airframe.to_str().unwrap(), "--health"];
         run(&mut library(&arguments, &folder.join("lib")));
+        // With the rotors' lag the same file calls other functions.
+        let vehicle = "[vehicle]\nmass_kg = 3.2\nrotor_lag_s = 0.05\n";
+        fs::write(&airframe, format!("{text}\n{air}{vehicle}")).unwrap();
+        let arguments = [airframe.to_str().unwrap(), "--health", "--dynamic"];
+        run(&mut library(&arguments, &folder.join("dynamic")));
         for header in self.headers {
             let path = folder.join("include").join(header);
             fs::create_dir_all(path.parent().unwrap()).unwrap();
@@ -129,12 +134,21 @@ impl Stack {
         let example = root().join(self.folder);
         for flags in self.flags {
             let program = folder.join("drive");
-            let mut compiler = Command::new("g++");
-            compiler.args(WARNINGS).args(*flags);
-            for include in [&folder.join("include"), &folder.join("lib"), &stand_ins, &example] {
-                compiler.arg("-I").arg(include);
-            }
-            compiler.arg(example.join(self.source));
+            let compiler = |lib: &str| {
+                let mut compiler = Command::new("g++");
+                compiler.args(WARNINGS).args(*flags);
+                for include in [&folder.join("include"), &folder.join(lib), &stand_ins, &example] {
+                    compiler.arg("-I").arg(include);
+                }
+                compiler.arg(example.join(self.source));
+                compiler
+            };
+            let object = folder.join("dynamic.o");
+            run(compiler("dynamic").arg("-c").arg("-o").arg(&object));
+            let symbols = run(Command::new("nm").arg("-u").arg(&object)).stdout;
+            let calls = String::from_utf8(symbols).unwrap();
+            assert!(calls.contains("isae_x8_mix_dynamic"), "{calls}");
+            let mut compiler = compiler("lib");
             compiler.arg(stand_ins.join(format!("{}.cpp", self.name)));
             compiler.arg(folder.join("lib/libisae_x8.a"));
             run(compiler.arg("-o").arg(&program));

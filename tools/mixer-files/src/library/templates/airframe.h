@@ -68,7 +68,7 @@ int @M@_mix(const mixer_wrench_t *setpoint, float voltage_v, @M@_mix_t *out);
 /* The same in air of a measured density, where @M@_mix takes the bench's: @DENSITY@. */
 int @M@_mix_in(const mixer_wrench_t *setpoint, const mixer_conditions_t *conditions, @M@_mix_t *out);
 
-@HEALTH@/* In @M@_selftest.c: number of golden rows whose bits differ, 0 where all is well. */
+@HEALTH@@DYNAMIC@/* In @M@_selftest.c: number of golden rows whose bits differ, 0 where all is well. */
 unsigned @M@_selftest(void);
 
 #ifdef __cplusplus
