@@ -23,7 +23,7 @@ use crate::airframe::{Airframe, GRAVITY, Kind};
 use crate::flywheel::{Flywheel, exponent, ohmic_share};
 use crate::model::injectivity::EnclosedPairMap;
 use crate::model::polynomial::ThrottleBox;
-use crate::model::{PairMap, equal_throttle, maps};
+use crate::model::{equal_throttle, maps};
 use crate::view::View;
 
 /// What is said of an airframe without `mix_dynamic`.

@@ -289,7 +289,7 @@ impl MixerTables {
             conditions.into(),
             health,
             states,
-            throttle.as_mut_slice(),
+            &mut mixer_rt::tables::by_channel(&mut throttle),
         )?;
         Ok((throttle, achieved, saturation))
     }

@@ -36,7 +36,7 @@
 use crate::allocate::closed_form::AllocationMethod;
 use crate::allocate::unit::UnitState;
 use crate::layout::Tables;
-use crate::mix::{Sink, mix_into};
+use crate::mix::mix_into;
 use crate::pair::alone::LEAST_RISE;
 use crate::pair::rotors::Rotors;
 use crate::pair::{Kinds, Quantity};
@@ -93,19 +93,6 @@ struct Steady {
     thrust_n: f32,
 }
 
-impl Sink for [Steady] {
-    #[inline(always)]
-    fn take(&mut self, unit: usize, _: [u8; 2], rotors: Rotors, throttles: [f32; 2], thrust_n: f32) {
-        if let Some(slot) = self.get_mut(unit) {
-            *slot = Steady {
-                rotors,
-                throttles,
-                thrust_n,
-            };
-        }
-    }
-}
-
 /// [`mix`](crate::tables::mix), its throttles changed so that the thrust of every unit follows while rotors change their
 /// speeds. `lags` are those of the kinds. `held_s` is the time, s, that the throttles will be held, which moves `state` on:
 /// negative and NaN are 0, and what is longer than [`LONGEST_S`] is that. `achieved` and `saturation` are those of `mix`: what
@@ -139,10 +126,18 @@ pub fn mix_dynamic<
         thrust_n: zero,
     }; UNITS];
     let states = || [UnitState::default(); UNITS];
-    let sink = steady.as_mut_slice();
-    let (achieved, saturation) = mix_into(tables, setpoint, conditions, health, states, sink)?;
+    let mut take = |unit: usize, _: [u8; 2], rotors, throttles, thrust_n| {
+        if let Some(slot) = steady.get_mut(unit) {
+            *slot = Steady {
+                rotors,
+                throttles,
+                thrust_n,
+            };
+        }
+    };
+    let (achieved, saturation) = mix_into(tables, setpoint, conditions, health, states, &mut take)?;
     let mut throttle = [tables.throttle.min; CHANNELS];
-    follow::<CHANNELS, HEALTH, _, _>(tables, lags, sink, state, &mut throttle, held_s);
+    follow::<CHANNELS, HEALTH, _, _>(tables, lags, &steady, state, &mut throttle, held_s);
     Ok(Mix {
         throttle,
         achieved,

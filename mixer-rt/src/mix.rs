@@ -92,8 +92,14 @@ pub fn mix<const UNITS: usize, const CHANNELS: usize, K: Kinds, S: AllocationMet
 ) -> Result<Mix<CHANNELS>, SetpointError> {
     let mut throttle = [tables.throttle.min; CHANNELS];
     let states = || [UnitState::default(); UNITS];
-    let outputs = throttle.as_mut_slice();
-    let (achieved, saturation) = mix_into(tables, setpoint, conditions, health, states, outputs)?;
+    let (achieved, saturation) = mix_into(
+        tables,
+        setpoint,
+        conditions,
+        health,
+        states,
+        &mut by_channel(&mut throttle),
+    )?;
     Ok(Mix {
         throttle,
         achieved,
@@ -102,11 +108,11 @@ pub fn mix<const UNITS: usize, const CHANNELS: usize, K: Kinds, S: AllocationMet
 }
 
 /// [`mix`] into buffers, for layouts whose size is known only at run time: `states` makes one element
-/// per unit where the closed form does not serve, `sink` takes what each unit is given: of `[f32]` one throttle per
-/// channel. Units or channels beyond a buffer's end are left out.
+/// per unit where the closed form does not serve, `take` what each unit is given. Units or channels beyond a buffer's end are
+/// left out.
 ///
 /// # Errors
-/// As [`mix`]; `sink` is then as it was.
+/// As [`mix`]; nothing is taken then.
 #[inline(always)]
 pub fn mix_into<K: Kinds, S: AllocationMethod, W: AsMut<[UnitState]>>(
     tables: &Tables<'_, K, S>,
@@ -114,34 +120,26 @@ pub fn mix_into<K: Kinds, S: AllocationMethod, W: AsMut<[UnitState]>>(
     conditions: Conditions,
     health: Health,
     states: impl FnOnce() -> W,
-    sink: &mut (impl Sink + ?Sized),
+    take: &mut impl Take,
 ) -> Result<(Wrench, Saturation), SetpointError> {
-    match mix_in_closed_form(tables, setpoint, conditions, health, sink) {
+    match mix_in_closed_form(tables, setpoint, conditions, health, take) {
         Some(mixed) => mixed,
-        None => mix_in_general(tables, setpoint, conditions, health, states().as_mut(), sink),
+        None => mix_in_general(tables, setpoint, conditions, health, states().as_mut(), take),
     }
 }
 
-/// Takes what a mix gives, unit by unit.
-pub trait Sink {
-    /// Of a unit, by index: its channels, the rotors that turn, its throttles `[u, l]` and their thrust, N at the reference
-    /// voltage. A unit may come again, as a request is cut; the last time counts.
-    fn take(&mut self, unit: usize, channels: [u8; 2], rotors: Rotors, throttles: [f32; 2], thrust_n: f32);
-}
+/// Takes what a mix gives a unit, by index: its channels, the rotors that turn, its throttles `[u, l]` and their thrust, N at
+/// the reference voltage. A unit may come again, as a request is cut; the last time counts.
+pub trait Take: FnMut(usize, [u8; 2], Rotors, [f32; 2], f32) {}
 
-/// The throttles by channel.
-impl Sink for [f32] {
-    #[inline(always)]
-    fn take(
-        &mut self,
-        _unit: usize,
-        channels: [u8; 2],
-        _rotors: Rotors,
-        throttles: [f32; 2],
-        _thrust_n: f32,
-    ) {
+impl<T: FnMut(usize, [u8; 2], Rotors, [f32; 2], f32)> Take for T {}
+
+/// Takes throttles by channel.
+#[inline(always)]
+pub fn by_channel(outputs: &mut [f32]) -> impl Take {
+    |_, channels, _, throttles, _| {
         for (channel, value) in channels.iter().zip(throttles) {
-            if let Some(slot) = self.get_mut(usize::from(*channel)) {
+            if let Some(slot) = outputs.get_mut(usize::from(*channel)) {
                 *slot = value;
             }
         }
@@ -159,7 +157,7 @@ fn mix_in_general<K: Kinds, S: AllocationMethod>(
     conditions: Conditions,
     health: Health,
     states: &mut [UnitState],
-    sink: &mut (impl Sink + ?Sized),
+    take: &mut impl Take,
 ) -> Mixed {
     let (request, bounded) = bounded(setpoint)?;
     let Correction { factors, clamped } =
@@ -185,7 +183,7 @@ fn mix_in_general<K: Kinds, S: AllocationMethod>(
     }
     let mut achieved = [0.0; 4];
     for (index, (unit, state)) in rolled(units.iter().zip(states).enumerate()) {
-        sink.take(
+        take(
             index,
             unit.channels,
             state.rotors,
@@ -205,12 +203,12 @@ fn mix_in_closed_form<K: Kinds, S: AllocationMethod>(
     setpoint: &Wrench,
     conditions: Conditions,
     health: Health,
-    sink: &mut (impl Sink + ?Sized),
+    take: &mut impl Take,
 ) -> Option<Mixed> {
     let is_good = health.is_good_below(2 * tables.units.len());
     let closed_form = tables.closed_form.closed_form().filter(|_| is_good)?;
     let kind = tables.kinds.pair(0)?;
-    Some(mix_by(closed_form, kind, tables, setpoint, conditions, sink))
+    Some(mix_by(closed_form, kind, tables, setpoint, conditions, take))
 }
 
 /// Mixes in closed form, with all rotors. Efforts next to the border ([`Attained::Perhaps`])
@@ -224,7 +222,7 @@ fn mix_by<K: Kinds, S>(
     tables: &Tables<'_, K, S>,
     setpoint: &Wrench,
     conditions: Conditions,
-    sink: &mut (impl Sink + ?Sized),
+    take: &mut impl Take,
 ) -> Mixed {
     let (request, bounded) = bounded(setpoint)?;
     let Correction { factors, clamped } =
@@ -255,7 +253,7 @@ fn mix_by<K: Kinds, S>(
             let wanted = [effort.thrust, effort.torque];
             let throttles = kind.inverse.throttles(&kind.pair, &tables.throttle, wanted);
             [effort.thrust, effort.torque] = kind.pair.efforts(throttles);
-            sink.take(index, unit.channels, Rotors::BOTH, throttles, effort.thrust);
+            take(index, unit.channels, Rotors::BOTH, throttles, effort.thrust);
             if attained == Attained::Perhaps {
                 is_near &= is_within([effort.thrust, effort.torque], wanted, tables.tolerance.efforts);
             }

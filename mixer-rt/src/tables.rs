@@ -19,7 +19,7 @@ pub use crate::arithmetic::{Scalar, sqrt};
 pub use crate::conditions::{Law, LawPiece};
 pub use crate::dynamic::{Lag, follow_given, mix_dynamic};
 pub use crate::layout::{NO_CHANNEL, Tables, Tolerance, Unit};
-pub use crate::mix::{Sealed, Sink, mix, mix_into};
+pub use crate::mix::{Sealed, by_channel, mix, mix_into};
 pub use crate::pair::{
     Biquadratic, Coefficients, Cubic, Inverse, Kinds, Pair, PairKind, PolynomialInverse, Quantity, Quartic,
     RotorAlone, ThrottleRange, Unlike, solve,

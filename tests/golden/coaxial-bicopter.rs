@@ -124,8 +124,8 @@ pub mod coaxial_bicopter {
     #[doc(hidden)]
     pub static LAGS: [tables::Lag; 1] = [
         tables::Lag {
-            base: 172.25388,
-            rise: 167.46904,
+            base: 172.25967,
+            rise: 167.47469,
             coast: ::core::option::Option::None,
         },
     ];

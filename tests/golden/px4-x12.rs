@@ -128,8 +128,8 @@ pub mod px4_x12 {
     #[doc(hidden)]
     pub static LAGS: [tables::Lag; 1] = [
         tables::Lag {
-            base: 172.25388,
-            rise: 167.46904,
+            base: 172.25949,
+            rise: 167.4745,
             coast: ::core::option::Option::None,
         },
     ];

@@ -125,8 +125,8 @@ pub mod px4_y6 {
     #[doc(hidden)]
     pub static LAGS: [tables::Lag; 1] = [
         tables::Lag {
-            base: 172.25388,
-            rise: 167.46904,
+            base: 172.07906,
+            rise: 167.29909,
             coast: ::core::option::Option::None,
         },
     ];

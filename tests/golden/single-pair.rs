@@ -123,8 +123,8 @@ pub mod single_pair {
     #[doc(hidden)]
     pub static LAGS: [tables::Lag; 1] = [
         tables::Lag {
-            base: 172.25388,
-            rise: 167.46904,
+            base: 172.07806,
+            rise: 167.29811,
             coast: ::core::option::Option::None,
         },
     ];

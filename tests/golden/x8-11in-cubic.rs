@@ -126,8 +126,8 @@ pub mod x8_11in_cubic {
     #[doc(hidden)]
     pub static LAGS: [tables::Lag; 1] = [
         tables::Lag {
-            base: 328.35007,
-            rise: 319.22925,
+            base: 328.35815,
+            rise: 319.2371,
             coast: ::core::option::Option::None,
         },
     ];

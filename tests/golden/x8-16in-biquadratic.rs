@@ -126,8 +126,8 @@ pub mod x8_16in_biquadratic {
     #[doc(hidden)]
     pub static LAGS: [tables::Lag; 1] = [
         tables::Lag {
-            base: 192.3004,
-            rise: 186.95872,
+            base: 192.30255,
+            rise: 186.9608,
             coast: ::core::option::Option::None,
         },
     ];

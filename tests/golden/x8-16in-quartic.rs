@@ -126,8 +126,8 @@ pub mod x8_16in_quartic {
     #[doc(hidden)]
     pub static LAGS: [tables::Lag; 1] = [
         tables::Lag {
-            base: 253.6727,
-            rise: 246.62624,
+            base: 253.66933,
+            rise: 246.62296,
             coast: ::core::option::Option::None,
         },
     ];

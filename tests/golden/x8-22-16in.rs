@@ -126,13 +126,13 @@ pub mod x8_22_16in {
     #[doc(hidden)]
     pub static LAGS: [tables::Lag; 2] = [
         tables::Lag {
-            base: 377.1949,
-            rise: 366.71725,
+            base: 399.2917,
+            rise: 388.20026,
             coast: ::core::option::Option::None,
         },
         tables::Lag {
-            base: 233.39285,
-            rise: 226.90971,
+            base: 247.95605,
+            rise: 241.06839,
             coast: ::core::option::Option::None,
         },
     ];

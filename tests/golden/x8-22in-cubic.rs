@@ -126,8 +126,8 @@ pub mod x8_22in_cubic {
     #[doc(hidden)]
     pub static LAGS: [tables::Lag; 1] = [
         tables::Lag {
-            base: 375.07376,
-            rise: 364.65506,
+            base: 375.06766,
+            rise: 364.6491,
             coast: ::core::option::Option::None,
         },
     ];

@@ -23,7 +23,7 @@ pub fn of(compiled: &Compiled, count: usize, rotors_out: u32) -> Vec<u64> {
                 setpoint.conditions(),
                 health,
                 || vec![UnitState::default(); tables.units.len()],
-                &mut throttle,
+                &mut mixer_rt::tables::by_channel(&mut throttle),
             );
             match &mixed {
                 Ok((achieved, saturation)) => digest.mix(Ok((&throttle, achieved, *saturation))),

@@ -128,8 +128,8 @@ pub mod tilted {
     #[doc(hidden)]
     pub static LAGS: [tables::Lag; 1] = [
         tables::Lag {
-            base: 328.35007,
-            rise: 319.22925,
+            base: 328.3611,
+            rise: 319.23996,
             coast: ::core::option::Option::None,
         },
     ];

@@ -104,7 +104,7 @@ fn generate() -> Result<(), String> {
         names.join(", ")
     );
     println!(
-        "cargo::rustc-check-cfg=cfg(baseline, values(none(), \"c-interface\", \"conventional\", \"sequential\", \"wls\"))"
+        "cargo::rustc-check-cfg=cfg(baseline, values(none(), \"c-interface\", \"conventional\", \"dynamic\", \"sequential\", \"wls\"))"
     );
     println!("cargo::rustc-check-cfg=cfg(rotors_out, values(\"1\", \"2\"))");
     println!("cargo::rustc-check-cfg=cfg(million)");

@@ -36,8 +36,9 @@
 //!
 //! Assumptions: the throttle is the duty; a rotor's load is its own, whatever the other does;
 //! coefficients know no Reynolds or Mach number; K, R and I0 know no temperature. The controller brakes as it
-//! drives, by the difference of the voltages (complementary PWM, "damped light"), which is the default of `BLHeli` and AM32:
-//! without, a rotor would slow down by its propeller alone. No controller limits current or slew.
+//! drives, by the difference of the voltages (complementary PWM, "damped light"), which is the default of `BLHeli` and AM32;
+//! with `[vehicle] rotor_brakes = false` a rotor slows down by its propeller alone: I is not below 0. No controller limits
+//! current or slew.
 
 use mixer_compiler::airframe::TYPICAL_EXPONENT;
 use mixer_compiler::flywheel;
@@ -66,6 +67,8 @@ pub struct Motor {
     sigma: f64,
     /// t, s.
     time_s: f64,
+    /// Whether the controller brakes.
+    brakes: bool,
 }
 
 impl Motor {
@@ -82,6 +85,7 @@ impl Motor {
             exponent,
             sigma: 1.0,
             time_s: 0.0,
+            brakes: true,
         }
     }
 
@@ -109,6 +113,13 @@ impl Motor {
         }
     }
 
+    /// The same motor on a controller that brakes, or does not: then no current flows back, and the rotor is slowed down by its
+    /// load alone.
+    #[must_use]
+    pub fn braking(self, brakes: bool) -> Self {
+        Motor { brakes, ..self }
+    }
+
     /// Speed over that of full throttle, steady at a throttle at the reference.
     pub fn speed_at_reference(&self, throttle: f64) -> f64 {
         self.speed_of(throttle, 1.0)
@@ -121,7 +132,13 @@ impl Motor {
 
     /// Change of the speed, 1/s.
     pub fn acceleration(&self, speed: f64, throttle: f64, volts: f64) -> f64 {
-        (throttle * self.supply_of(volts) - self.drive(speed, self.sigma)) / self.time_s
+        let applied = throttle * self.supply_of(volts);
+        let back_emf = if self.brakes {
+            0.0
+        } else {
+            (1.0 - self.ohmic) * speed
+        };
+        (applied.max(back_emf) - self.drive(speed, self.sigma)) / self.time_s
     }
 
     /// At the speeds of a pair's rotors and a voltage: what efforts of the map are multiplied by,

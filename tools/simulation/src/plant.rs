@@ -125,9 +125,13 @@ impl<const R: usize> Plant<R> {
         });
         // All rotors have one lag, at the mean of their speeds in hover where kinds differ.
         let speed = kinds.iter().map(|(speed, _)| speed).sum::<f64>() / kinds.len() as f64;
+        let brakes = airframe
+            .vehicle
+            .as_ref()
+            .is_none_or(|vehicle| vehicle.rotor_brakes);
         Plant {
             units: units.collect(),
-            motor: motor.with_lag(body.rotor_lag_s, speed),
+            motor: motor.with_lag(body.rotor_lag_s, speed).braking(brakes),
             bench_kg_m3: airframe
                 .air
                 .as_ref()

@@ -111,7 +111,14 @@ impl Header<'_> {
                 ("VOLTAGE", &voltage),
                 ("DENSITY", &density),
                 ("HEALTH", &self.health()),
-                ("DYNAMIC", &self.dynamic()),
+                (
+                    "DYNAMIC",
+                    &if self.dynamic {
+                        self.dynamic()
+                    } else {
+                        String::new()
+                    },
+                ),
             ],
         )
     }
@@ -158,30 +165,21 @@ impl Header<'_> {
         )
     }
 
-    /// Rotors under way. Their lag is a constant where the file has one: code of flight stacks asks for it.
+    /// Rotors under way. Their lag is a constant where the file has it: the modules of flight stacks ask for it.
     fn dynamic(&self) -> String {
-        if !self.dynamic {
-            return String::new();
-        }
-        let health = match self.health {
-            true => include_str!("templates/dynamic_health.h"),
-            false => "",
-        };
-        let known = self
-            .airframe
-            .compiled
-            .dynamics
-            .iter()
-            .flatten()
-            .find(|of| !of.is_estimated);
-        let lag = known.map(|of| format!("#define @PREFIX@_ROTOR_LAG_S {}\n", float(of.lag_s as f32)));
-        let text = include_str!("templates/dynamic.h").to_owned() + health;
-        let values: &[(&str, &dyn Display)] = &[
-            ("LAG", &lag.unwrap_or_default()),
+        let kinds = self.airframe.compiled.dynamics.iter().flatten();
+        let known = kinds
+            .filter(|of| !of.is_estimated)
+            .map(|of| float(of.lag_s as f32));
+        let lag = known
+            .take(1)
+            .map(|lag_s| format!("#define {}_ROTOR_LAG_S {lag_s}\n", self.airframe.prefix()));
+        let values: [(&str, &dyn Display); 3] = [
+            ("LAG", &lag.collect::<String>()),
             ("M", &self.airframe.module),
             ("PREFIX", &self.airframe.prefix()),
         ];
-        fill(&fill(&text, values), values)
+        fill(include_str!("templates/dynamic.h"), &values)
     }
 
     /// `M.cmake`.

@@ -12,59 +12,56 @@ pub(crate) struct Object {
 
 /// Names of its C functions: at the bench's density, and under conditions; or of rotors under way.
 pub(crate) fn functions(module: &str, object: Object) -> Vec<String> {
-    let health = if object.health { "_with_health" } else { "" };
-    let names = match object {
-        Object { dynamic: false, .. } => ["mix", "mix_in"].as_slice(),
-        Object { health: false, .. } => &["mix_dynamic", "follow"],
-        _ => &["mix_dynamic"],
+    let names: &[&str] = match (object.dynamic, object.health) {
+        (false, false) => &["mix", "mix_in"],
+        (false, true) => &["mix_with_health", "mix_in_with_health"],
+        (true, false) => &["mix_dynamic", "follow"],
+        (true, true) => &["mix_dynamic_with_health"],
     };
-    names
-        .iter()
-        .map(|name| format!("{module}_{name}{health}"))
-        .collect()
+    names.iter().map(|name| format!("{module}_{name}")).collect()
 }
 
-/// A crate that exports these functions alone.
+/// A crate that exports these functions alone. Those that mix jump to one, so that the mixer is there once.
 pub(crate) fn rust(airframe: &Airframe, object: Object) -> String {
     let Airframe { compiled, module, .. } = airframe;
-    let (parameter, argument, with_health, of_health) = match object.health {
-        true => (
-            "failed: u64, ",
-            "failed, ",
-            "_with_health",
-            ", mixer_rt::Health::from_bits(failed)",
+    let Object { health, dynamic } = object;
+    let words = |is: bool, words: [&'static str; 4]| if is { words } else { [""; 4] };
+    let with_failed = [
+        "failed: u64, ",
+        "failed, ",
+        "_with_health",
+        ", mixer_rt::Health::from_bits(failed)",
+    ];
+    let [failed, mask, with_health, of_health] = words(health, with_failed);
+    let with_state = [
+        "state: *mut airframe::State, ",
+        "state, ",
+        "held_s: f32, ",
+        "held_s, ",
+    ];
+    let [before, state, held, held_s] = words(dynamic, with_state);
+    let (parameter, argument) = (format!("{failed}{held}"), format!("{mask}{held_s}"));
+    let mix_in = format!(
+        "{module}_mix_{}{with_health}",
+        if dynamic { "dynamic" } else { "in" }
+    );
+    let call = match dynamic {
+        true => format!(
+            "airframe::mix_dynamic{with_health}(unsafe {{ &mut *state }}, &setpoint, conditions{of_health}, held_s)"
         ),
-        false => ("", "", "", ""),
+        false => format!("airframe::mix{with_health}(&setpoint, conditions{of_health})"),
     };
-    let functions = functions(module, object);
-    let [mix, second] = [0, 1].map(|k| functions.get(k).map_or("", String::as_str));
+    let density = compiled.airframe.reference_density() as f32;
     let generated = compiled.rust();
-    let entries = match object.dynamic {
-        true => {
-            let follow = match object.health {
-                true => "",
-                false => FOLLOW,
-            };
-            DYNAMIC
-                .replace("WITH_HEALTH", with_health)
-                .replace("OF_HEALTH", of_health)
-                + follow
-        }
-        false => STEADY
-            .replace("ARGUMENT", argument)
-            .replace(
-                "CALL",
-                &format!("airframe::mix{with_health}(&setpoint, conditions{of_health})"),
-            )
-            .replace(
-                "DENSITY",
-                &format!("{:?}", compiled.airframe.reference_density() as f32),
-            ),
+    let first = match object {
+        Object { dynamic: false, .. } => format!("{EXPORTED} fn {module}_mix{with_health}(setpoint: *const Wrench, voltage_v: f32, {parameter}out: *mut Mix) -> c_int {{
+    unsafe {{ mix(setpoint, voltage_v, {density:?}, {argument}out) }}
+}}"),
+        Object { health: false, .. } => format!("{EXPORTED} fn {module}_follow(state: *mut airframe::State, given: *const [f32; airframe::CHANNELS], held_s: f32) {{
+    unsafe {{ airframe::follow(&mut *state, &*given, held_s) }}
+}}"),
+        _ => String::new(),
     };
-    let entries = entries
-        .replace("PARAMETER", parameter)
-        .replace("FIRST", mix)
-        .replace("SECOND", second);
     format!(
         "{HEAD}mod generated {{
 {generated}
@@ -78,10 +75,23 @@ pub struct Mix {{
     saturation: u32,
 }}
 
-/// Gives the status of a mix, and what it gives to `out`.
-#[inline(always)]
-unsafe fn write(mix: Result<mixer_rt::Mix<{{ airframe::CHANNELS }}>, mixer_rt::SetpointError>, out: *mut Mix) -> c_int {{
-    match mix {{
+/// # Safety
+/// The pointers are to their types.
+{first}
+
+/// # Safety
+/// `setpoint`, `conditions` and `out` point to their types.
+{EXPORTED} fn {mix_in}({before}setpoint: *const Wrench, conditions: *const Conditions, {parameter}out: *mut Mix) -> c_int {{
+    let Conditions {{ voltage_v, density_kg_m3 }} = unsafe {{ conditions.read() }};
+    unsafe {{ mix({state}setpoint, voltage_v, density_kg_m3, {argument}out) }}
+}}
+
+#[inline(never)]
+unsafe extern \"C\" fn mix({before}setpoint: *const Wrench, voltage_v: f32, density_kg_m3: f32, {parameter}out: *mut Mix) -> c_int {{
+    let Wrench {{ roll_nm, pitch_nm, yaw_nm, thrust_n }} = unsafe {{ setpoint.read() }};
+    let setpoint = mixer_rt::Wrench {{ roll_nm, pitch_nm, yaw_nm, thrust_n }};
+    let conditions = mixer_rt::Conditions::at_voltage(voltage_v).in_air(density_kg_m3);
+    match {call} {{
         Ok(mix) => {{
             let mixer_rt::Wrench {{ roll_nm, pitch_nm, yaw_nm, thrust_n }} = mix.achieved;
             let achieved = Wrench {{ roll_nm, pitch_nm, yaw_nm, thrust_n }};
@@ -100,56 +110,12 @@ unsafe fn write(mix: Result<mixer_rt::Mix<{{ airframe::CHANNELS }}>, mixer_rt::S
         Err(error) => error.status() as c_int,
     }}
 }}
-
-{entries}"
+"
     )
 }
 
-/// Both jump to a third, so that the mixer is there once.
-const STEADY: &str = "/// # Safety
-/// `setpoint` and `out` point to their types.
-#[unsafe(no_mangle)]
-pub unsafe extern \"C\" fn FIRST(setpoint: *const Wrench, voltage_v: f32, PARAMETERout: *mut Mix) -> c_int {
-    unsafe { mix(setpoint, voltage_v, DENSITY, ARGUMENTout) }
-}
-
-/// # Safety
-/// `setpoint`, `conditions` and `out` point to their types.
-#[unsafe(no_mangle)]
-pub unsafe extern \"C\" fn SECOND(setpoint: *const Wrench, conditions: *const Conditions, PARAMETERout: *mut Mix) -> c_int {
-    let Conditions { voltage_v, density_kg_m3 } = unsafe { conditions.read() };
-    unsafe { mix(setpoint, voltage_v, density_kg_m3, ARGUMENTout) }
-}
-
-#[inline(never)]
-unsafe extern \"C\" fn mix(setpoint: *const Wrench, voltage_v: f32, density_kg_m3: f32, PARAMETERout: *mut Mix) -> c_int {
-    let Wrench { roll_nm, pitch_nm, yaw_nm, thrust_n } = unsafe { setpoint.read() };
-    let setpoint = mixer_rt::Wrench { roll_nm, pitch_nm, yaw_nm, thrust_n };
-    let conditions = mixer_rt::Conditions::at_voltage(voltage_v).in_air(density_kg_m3);
-    unsafe { write(CALL, out) }
-}
-";
-
-const DYNAMIC: &str = "/// # Safety
-/// All pointers are to their types.
-#[unsafe(no_mangle)]
-pub unsafe extern \"C\" fn FIRST(state: *mut airframe::State, setpoint: *const Wrench, conditions: *const Conditions, PARAMETERheld_s: f32, out: *mut Mix) -> c_int {
-    let Wrench { roll_nm, pitch_nm, yaw_nm, thrust_n } = unsafe { setpoint.read() };
-    let setpoint = mixer_rt::Wrench { roll_nm, pitch_nm, yaw_nm, thrust_n };
-    let Conditions { voltage_v, density_kg_m3 } = unsafe { conditions.read() };
-    let conditions = mixer_rt::Conditions::at_voltage(voltage_v).in_air(density_kg_m3);
-    unsafe { write(airframe::mix_dynamicWITH_HEALTH(&mut *state, &setpoint, conditionsOF_HEALTH, held_s), out) }
-}
-";
-
-const FOLLOW: &str = "
-/// # Safety
-/// Both pointers are to their types.
-#[unsafe(no_mangle)]
-pub unsafe extern \"C\" fn SECOND(state: *mut airframe::State, given: *const [f32; airframe::CHANNELS], held_s: f32) {
-    unsafe { airframe::follow(&mut *state, &*given, held_s) }
-}
-";
+const EXPORTED: &str = "#[unsafe(no_mangle)]
+pub unsafe extern \"C\"";
 
 const HEAD: &str = "#![no_std]
 use core::ffi::c_int;

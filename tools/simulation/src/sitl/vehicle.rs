@@ -112,7 +112,9 @@ impl Vehicle {
                 rotor.with_lag(kinds.iter().map(Flywheel::lag_s).sum::<f64>() / kinds.len() as f64)
             }
         };
-        let rotor = with_lag(rotor, arguments.rotor_lag).map_err(|reason| format!("{path}: {reason}"))?;
+        let stated_s = || stated?.rotor_lag_s.filter(|_| arguments.rotor_inertia.is_none());
+        let rotor = with_lag(rotor, arguments.rotor_lag.or_else(stated_s))
+            .map_err(|reason| format!("{path}: {reason}"))?;
         let moments = arguments.inertia.or_else(|| stated?.inertia_kg_m2);
         let body = Body {
             mass_kg,

@@ -13,3 +13,7 @@ int @M@_mix_dynamic(@M@_state_t *state, const mixer_wrench_t *setpoint, const mi
 /* Moves on a state from before the mix, for who gave other throttles than it did. */
 void @M@_follow(@M@_state_t *state, const float given[@PREFIX@_CHANNELS], float held_s);
 
+/* With rotors out, in a library of --health: an object of its own. */
+int @M@_mix_dynamic_with_health(@M@_state_t *state, const mixer_wrench_t *setpoint,
+    const mixer_conditions_t *conditions, uint64_t failed, float held_s, @M@_mix_t *out);
+
