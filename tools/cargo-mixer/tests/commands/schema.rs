@@ -187,7 +187,8 @@ fn the_parser_agrees_key_by_key() {
              [[unit]]\nposition_m = [-0.3, 0.0, 0.0]\nupper_spin = \"cw\"\nchannels = [2]\nrotor = \"single\"\n{UNIT}"
         ),
         format!(
-            "name = \"four\"\n{}[layout]\narm_m = 0.45\nunits = 3\nfirst_angle_deg = 60\nfirst_spin = \"ccw\"\n",
+            "name = \"four\"\n{}[layout]\narm_m = 0.45\nunits = 3\nfirst_angle_deg = 60\nfirst_spin = \"ccw\"\n\
+             [vehicle]\nmass_kg = 3.0\nrotor_lag_s = 0.05\nrotor_brakes = false\n",
             with_law(&pair, other)
         ),
     ];

@@ -416,9 +416,7 @@ fn compiled(
                     throttle.min, throttle.max
                 )
             }
-            None => {
-                "a run of a rotor whose thrust and torque grow over the whole throttle, or a bench".to_owned()
-            }
+            None => "a run of a rotor whose thrust and torque grow over all throttles, or a bench".to_owned(),
         };
         Refusal::of(file, reason, needed)
     })
