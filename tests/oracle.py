@@ -14,7 +14,7 @@ inverse of the pair's map and laws of voltage and density, in double precision, 
 
 A single rotor (`rotor = ".."`) is a pair whose lower rotor is always out: its torque is not in proportion to its thrust, which
 M+ takes it for, so that its least-norm efforts are those of the wrench from which the difference is taken. The mixer goes from M+ to
-the nearest throttles instead, so that on frames with single rotors the wrench is judged, and efforts within 1 % of a unit's largest.
+the nearest throttles instead, so that on frames with single rotors the wrench is judged, and efforts within 2 % of a unit's largest.
 
 What it asks of every row:
   * throttles within [min, max]; one row per setpoint
@@ -168,7 +168,7 @@ class Airframe:
 
     def room(self, unit):
         """How far efforts may be from those of least norm."""
-        near = 0.01 if any(kappa is not None for kappa in self.kappa) else 0.0
+        near = 0.02 if any(kappa is not None for kappa in self.kappa) else 0.0
         return [max(1.001 * tolerance, near * size) for tolerance, size in zip(self.tolerance, self.size[unit])]
 
     def largest(self, unit):

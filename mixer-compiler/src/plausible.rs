@@ -27,40 +27,40 @@ use crate::model::effectiveness::Effectiveness;
 /// The rules of one part of an airframe, by what they are of.
 enum Rules {
     /// Each pair.
-    OfPairs(fn(&KindFacts<'_>, &Pair) -> Vec<Rule>),
+    EachPair(fn(&KindFacts<'_>, &Pair) -> Vec<Rule>),
     /// Each kind of unit: pairs and single rotors.
-    OfKinds(fn(&KindFacts<'_>) -> Vec<Rule>),
+    EachKind(fn(&KindFacts<'_>) -> Vec<Rule>),
     /// The frame.
-    OfFrame(fn(&Facts<'_>) -> Vec<Rule>),
+    Frame(fn(&Facts<'_>) -> Vec<Rule>),
 }
 
-use Rules::{OfFrame, OfKinds, OfPairs};
+use Rules::{EachKind, EachPair, Frame};
 
 /// All rules, those that may be the reason of others before these.
 const RULES: [Rules; 23] = [
-    OfPairs(pair::borrowed),
-    OfKinds(pair::units),
-    OfPairs(rotors::order),
-    OfPairs(pair::wake),
-    OfKinds(pair::idle),
-    OfFrame(pair::spin_min),
-    OfPairs(rotors::sizes),
-    OfKinds(pair::growth),
-    OfPairs(pair::left),
-    OfPairs(pair::power),
-    OfFrame(geometry::odd_place),
-    OfFrame(geometry::arms),
-    OfFrame(geometry::radians),
-    OfFrame(geometry::centre_of_gravity),
-    OfFrame(geometry::outputs),
-    OfFrame(supply::voltage),
-    OfFrame(supply::air),
-    OfKinds(limits::wide_tolerances),
-    OfFrame(allocation::yaw),
-    OfPairs(allocation::power_bias),
-    OfFrame(allocation::idle_power_bias),
-    OfFrame(vehicle::hover),
-    OfFrame(vehicle::rotor_inertia),
+    EachPair(pair::borrowed),
+    EachKind(pair::units),
+    EachPair(rotors::order),
+    EachPair(pair::wake),
+    EachKind(pair::idle),
+    Frame(pair::spin_min),
+    EachPair(rotors::sizes),
+    EachKind(pair::growth),
+    EachPair(pair::left),
+    EachPair(pair::power),
+    Frame(geometry::odd_place),
+    Frame(geometry::arms),
+    Frame(geometry::radians),
+    Frame(geometry::centre_of_gravity),
+    Frame(geometry::outputs),
+    Frame(supply::voltage),
+    Frame(supply::air),
+    EachKind(limits::wide_tolerances),
+    Frame(allocation::yaw),
+    EachPair(allocation::power_bias),
+    Frame(allocation::idle_power_bias),
+    Frame(vehicle::hover),
+    Frame(vehicle::rotor_inertia),
 ];
 
 /// Warnings of an airframe that compiles.
@@ -104,14 +104,14 @@ fn check(airframe: &Airframe, compiled: Option<(&Effectiveness, [f64; 2])>) -> V
     for rules in &RULES {
         match rules {
             // A map without thrust or torque has faults enough.
-            OfFrame(_) if !frame.scale.iter().all(|effort| *effort > 0.0) => {}
-            OfFrame(rules) => tell(None, rules(&frame)),
-            OfPairs(_) | OfKinds(_) => {
+            Frame(_) if !frame.scale.iter().all(|effort| *effort > 0.0) => {}
+            Frame(rules) => tell(None, rules(&frame)),
+            EachPair(_) | EachKind(_) => {
                 for (index, facts) in kinds.iter().enumerate() {
                     match (rules, facts.view.of) {
                         _ if !facts.scale.iter().all(|effort| *effort > 0.0) => {}
-                        (OfKinds(rules), _) => tell(Some(index), rules(facts)),
-                        (OfPairs(rules), Kind::Pair(pair)) => tell(Some(index), rules(facts, pair)),
+                        (EachKind(rules), _) => tell(Some(index), rules(facts)),
+                        (EachPair(rules), Kind::Pair(pair)) => tell(Some(index), rules(facts, pair)),
                         _ => {}
                     }
                 }

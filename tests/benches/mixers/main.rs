@@ -14,7 +14,7 @@ use std::time::SystemTime;
 use criterion::{BenchmarkGroup, Criterion, Throughput, measurement::WallTime};
 use isolated_rotors::{IsolatedRotors, IsolatedTables};
 use mixer_rt::Wrench;
-use mixer_rt::tables::{Airmode, AllocationMethod, Inverse, Quantity, Tables};
+use mixer_rt::tables::{Airmode, AllocationMethod, Kinds, Tables};
 use mixer_setpoints::{RequestKind, Requests};
 use mixer_tests::golden;
 use wls::WeightedLeastSquares;

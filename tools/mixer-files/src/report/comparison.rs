@@ -6,8 +6,8 @@ use mixer_compiler::airframe::Axis;
 use mixer_rt::Wrench;
 
 use crate::report::authority;
+use crate::report::number::fixed;
 use crate::report::study::Study;
-use crate::report::table::rounded;
 use isolated_rotors::IsolatedTables;
 
 /// What one mixer makes of one yaw command.
@@ -48,6 +48,11 @@ pub struct Comparison {
     pub kappa_m: f64,
     /// By ascending yaw.
     pub rows: Vec<Row>,
+}
+
+/// A unit's efforts to the digits of the table.
+pub(super) fn rounded([f, q]: [f64; 2]) -> [String; 2] {
+    [fixed(f, 2), fixed(q, 3)]
 }
 
 impl Comparison {

@@ -6,7 +6,7 @@ use mixer_compiler::diagnostic::printable;
 use mixer_facts::Fact;
 
 use crate::report::bench::BenchPoints;
-use crate::report::comparison::{Comparison, YawResponse};
+use crate::report::comparison::{Comparison, YawResponse, rounded};
 use crate::report::effort::Effort;
 use crate::report::number::{fixed, range, shortest, significant};
 use crate::report::rows::table;
@@ -107,11 +107,6 @@ pub fn matrices(study: &Study<'_>, facts: &[Fact]) -> Markup {
         }
         (self::facts(facts.iter().filter(|fact| !fact.in_verdict && !fact.is_cost()), &[]))
     }
-}
-
-/// A unit's efforts to the digits of the table.
-pub(super) fn rounded([f, q]: [f64; 2]) -> [String; 2] {
-    [fixed(f, 2), fixed(q, 3)]
 }
 
 /// The static comparison; an asterisk marks a throttle at its limit.
