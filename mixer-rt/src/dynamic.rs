@@ -95,7 +95,7 @@ struct Steady {
 
 /// [`mix`](crate::tables::mix), its throttles changed so that the thrust of every unit follows while rotors change their
 /// speeds. `lags` are those of the kinds. `held_s` is the time, s, that the throttles will be held, which moves `state` on:
-/// negative and NaN are 0, and what is longer than [`LONGEST_S`] is that. `achieved` and `saturation` are those of `mix`: what
+/// negative and NaN are 0, and a longer one than 100 s is 100 s. `achieved` and `saturation` are those of `mix`: what
 /// the controller can have, and what its anti-windup needs. `HEALTH` tells that `health` may name rotors. A rotor that is out
 /// is commanded to stop and is remembered as it does; a unit of which a rotor is starting, below half of idle, has the
 /// throttles of `mix`.
