@@ -26,8 +26,8 @@ const PER_CORRECTION: u32 = 50;
 const PER_KIND: u32 = 35;
 
 /// Least norm with single rotors beside that of pairs, and one of these in it.
-const WITH_SINGLE_ROTORS: u32 = 600;
-const PER_SINGLE: u32 = 700;
+const WITH_SINGLE_ROTORS: u32 = 300;
+const PER_SINGLE: u32 = 950;
 
 /// Requests that least norm delivers: the median over attainable ones.
 const CLOSED_FORM: Overhead = Overhead {
