@@ -133,8 +133,8 @@ pub mod hexa_stacked {
             coast: ::core::option::Option::None,
         },
         tables::Lag {
-            base: 188.34666,
-            rise: 183.1148,
+            base: 212.54659,
+            rise: 206.64252,
             coast: ::core::option::Option::None,
         },
     ];
@@ -368,7 +368,7 @@ pub mod hexa_stacked {
         voltage: VOLTAGE,
         air: AIR,
         row_scale: [0.11283972, 0.11160576, 1.9763181, 0.03231301],
-        level_n: [14.482852, 170.4107],
+        level_n: [13.887161, 170.51878],
         is_vertical: true,
         priorities: tables::Priorities {
             airmode: tables::Airmode::Disabled,

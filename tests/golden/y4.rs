@@ -130,8 +130,8 @@ pub mod y4 {
             coast: ::core::option::Option::None,
         },
         tables::Lag {
-            base: 188.22466,
-            rise: 182.9962,
+            base: 212.79904,
+            rise: 206.88797,
             coast: ::core::option::Option::None,
         },
     ];
@@ -335,7 +335,7 @@ pub mod y4 {
         voltage: VOLTAGE,
         air: AIR,
         row_scale: [0.18513153, 0.11967781, 1.9763181, 0.03231301],
-        level_n: [6.8129697, 81.45526],
+        level_n: [6.812969, 81.45526],
         is_vertical: true,
         priorities: tables::Priorities {
             airmode: tables::Airmode::Disabled,
