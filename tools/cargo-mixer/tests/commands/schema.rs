@@ -32,6 +32,7 @@ fn faults(schema: &Value, value: &Value, path: &str) -> Vec<String> {
                     "array" => value.is_array(),
                     "string" => value.is_string(),
                     "number" => value.is_number(),
+                    "boolean" => value.is_boolean(),
                     "integer" => value.is_u64() || value.is_i64(),
                     other => panic!("type {other}"),
                 };
