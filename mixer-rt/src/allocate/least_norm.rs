@@ -10,8 +10,8 @@ use crate::layout::Unit;
 use crate::pair::Kinds;
 use crate::rolled;
 
-/// Shares that the guard tries, each the half of the one before, of roll and pitch, then of yaw: of whole frames, and with
-/// rotors out, where yaw has any. Every one is a least norm more in the stated bound.
+/// Shares that the guard tries of roll and pitch, and of yaw: with all rotors, and with rotors out. The first share is the
+/// whole request, each further one half of the one before. Every try is a least norm more in the stated bound.
 const TRIES: [[u32; 2]; 2] = [[3, 1], [2, 0]];
 
 /// Times that the guard runs least norm, of whole frames and with rotors out.
@@ -65,8 +65,8 @@ impl<K: Kinds, S: AllocationMethod, const VERTICAL: bool> Frame<'_, '_, K, S, VE
     }
 
     /// The guard, where the interior point method has not met the rows: the largest share of roll and pitch, then of
-    /// yaw, that least norm gives at the thrust asked, of whole frames at the nearest one with level flight. It is sound
-    /// whatever the sets, for it is delivered. Where least norm gives no level flight, the method's answer stays.
+    /// yaw, that least norm gives at the thrust asked. With all rotors that thrust is limited to that of level flight. The
+    /// answer is one that the units give, whatever their sets. Where least norm gives no level flight, the method's answer stays.
     #[inline(never)]
     pub(super) fn guard(&self, wrench: &[f32; 4], units: &mut [UnitState], is_whole: bool) {
         let [roll, pitch, yaw, mut thrust] = *wrench;
