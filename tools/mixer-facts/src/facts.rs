@@ -346,13 +346,13 @@ fn dynamics(list: &mut List, compiled: &Compiled) {
     let each = compiled.airframe.views().zip(of_kinds).map(|(view, of)| {
         let origin = match of.is_estimated {
             true => {
-                "seven tenths of an estimate; measured, it keeps the thrust in steps of yaw (docs/bench.md)"
+                "0.7 of an estimate; measure it for `mix_dynamic` (docs/bench.md)"
             }
             false => "as the file says",
         };
         let (throttle, shift) = (of.throttle, of.shift_per_square);
         let words = format!(
-            " at throttle {throttle:.2}, {origin}; shifts throttles by {shift:.1} d^2 at most, rotors d off"
+            " at throttle {throttle:.2}, {origin}; where a rotor is d of throttle off, `mix_dynamic` shifts by {shift:.1} d^2 at most"
         );
         (view.of, format!("{:.3}", of.lag_s), words)
     });
