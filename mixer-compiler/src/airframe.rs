@@ -300,7 +300,7 @@ impl Airframe {
         label: impl Into<String>,
         help: impl Into<String>,
     ) -> Diagnostic {
-        Diagnostic::new(code, key, self.place(key), message.into())
+        Diagnostic::new(code, key, self.place(key), message)
             .label(label)
             .help(help)
     }
