@@ -74,6 +74,7 @@ impl<K: Kinds, S: AllocationMethod, const VERTICAL: bool> Frame<'_, '_, K, S, VE
             let [least, most] = self.tables.level_n.map(|end| end * self.factors[0]);
             thrust = clamp(thrust, least, most);
         }
+        let share = |[torque, turn]: [f32; 2]| [torque * roll, torque * pitch, turn * yaw, thrust];
         let mut kept = [0.0; 2];
         for (axes, tries) in TRIES[usize::from(!is_whole)].into_iter().enumerate() {
             let mut step = 1.0;
@@ -81,24 +82,12 @@ impl<K: Kinds, S: AllocationMethod, const VERTICAL: bool> Frame<'_, '_, K, S, VE
                 let mut more = kept;
                 more[axes] += step;
                 step *= 0.5;
-                let [torque, turn] = more;
-                if more[axes] <= 1.0
-                    && self.serve(
-                        &[torque * roll, torque * pitch, turn * yaw, thrust],
-                        units,
-                        is_whole,
-                    )
-                {
+                if more[axes] <= 1.0 && self.serve(&share(more), units, is_whole) {
                     kept = more;
                 }
             }
         }
-        let [torque, turn] = kept;
-        if self.serve(
-            &[torque * roll, torque * pitch, turn * yaw, thrust],
-            units,
-            is_whole,
-        ) {
+        if self.serve(&share(kept), units, is_whole) {
             return;
         }
         for (index, state) in rolled(units.iter_mut().enumerate()) {
