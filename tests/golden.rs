@@ -1,12 +1,16 @@
 //! Every airframe compiles to its golden outputs, byte for byte.
 #![allow(missing_docs)]
 
+use std::collections::BTreeMap;
+use std::fs;
+
 use cargo_mixer::commands::golden::compare;
 use mixer_files::golden::outputs;
 use mixer_files::vectors::{self, Vector, VectorKind};
 use mixer_rt::{Conditions, Health, Wrench};
+use mixer_tests::frames;
 use mixer_tests::physics::Physics;
-use mixer_tests::{airframes, golden};
+use mixer_tests::{airframes, golden, root, toml_names};
 
 #[path = "firmware/src/bin/vectors/harness.rs"]
 mod harness;
@@ -19,6 +23,32 @@ fn airframes_compile_to_their_golden_outputs() {
     let outputs = golden::outputs().unwrap_or_else(|e| panic!("{e}"));
     let differences = compare::differences(&golden::folder(), &outputs).unwrap_or_else(|e| panic!("{e}"));
     assert!(differences.is_empty(), "{}\n{MEND}", differences.join("\n"));
+}
+
+/// What no shipped airframe has is held by the vectors of `tests/fixtures`: steep facets, reserves, yaw before thrust, least
+/// power without a closed form. `MIXER_BLESS=1` writes them.
+#[test]
+fn fixtures_give_their_golden_vectors() {
+    let fixtures = root().join("tests/fixtures");
+    let folder = fixtures.join("golden");
+    let mut vectors = BTreeMap::new();
+    for name in toml_names("tests/fixtures").expect("tests/fixtures") {
+        let text = fs::read_to_string(fixtures.join(format!("{name}.toml"))).expect("text");
+        let compiled = frames::compile_text(&text).unwrap_or_else(|e| panic!("{e}"));
+        let tables = outputs(&compiled).into_iter();
+        vectors.extend(tables.filter(|(file, _)| file.ends_with(".csv")));
+    }
+    if std::env::var_os("MIXER_BLESS").is_some() {
+        for (file, content) in &vectors {
+            fs::write(folder.join(file), content).expect("tests/fixtures/golden");
+        }
+    }
+    let differences = compare::differences(&folder, &vectors).unwrap_or_else(|e| panic!("{e}"));
+    assert!(
+        differences.is_empty(),
+        "{}\nif the change is meant, MIXER_BLESS=1",
+        differences.join("\n")
+    );
 }
 
 /// The same text gives the same bytes, also in one process and whatever was compiled before.

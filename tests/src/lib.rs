@@ -54,8 +54,17 @@ pub fn folder(package: &str) -> PathBuf {
 ///
 /// If the folder cannot be read.
 pub fn airframes() -> std::io::Result<Vec<String>> {
+    toml_names("airframes")
+}
+
+/// Names of the files `<folder>/<name>.toml`, sorted.
+///
+/// # Errors
+///
+/// If the folder cannot be read.
+pub fn toml_names(folder: &str) -> std::io::Result<Vec<String>> {
     let mut names = Vec::new();
-    for entry in std::fs::read_dir(root().join("airframes"))? {
+    for entry in std::fs::read_dir(root().join(folder))? {
         let path = entry?.path();
         if path.extension().is_some_and(|extension| extension == "toml") {
             names.extend(path.file_stem().map(|stem| stem.to_string_lossy().into_owned()));
