@@ -56,6 +56,15 @@ pub struct Tolerance {
     pub wrench: [f32; 4],
 }
 
+impl Tolerance {
+    /// Whether a unit that gives these efforts serves those that are asked of it.
+    #[inline(always)]
+    pub(crate) fn allows(&self, given: [f32; 2], asked: [f32; 2]) -> bool {
+        let [thrust, torque] = self.efforts;
+        (given[0] - asked[0]).abs() <= thrust && (given[1] - asked[1]).abs() <= torque
+    }
+}
+
 /// All that the mixer of one airframe needs. `K` is what its units give, `S` says whether there is a closed form:
 /// `&ClosedForm`, or [`NoClosedForm`].
 #[derive(Clone, Copy, Debug, PartialEq)]

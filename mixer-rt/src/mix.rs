@@ -255,7 +255,7 @@ fn mix_by<K: Kinds, S>(
             [effort.thrust, effort.torque] = kind.pair.efforts(throttles);
             take(index, unit.channels, Rotors::BOTH, throttles, effort.thrust);
             if attained == Attained::Perhaps {
-                is_near &= is_within([effort.thrust, effort.torque], wanted, tables.tolerance.efforts);
+                is_near &= tables.tolerance.allows([effort.thrust, effort.torque], wanted);
             }
         }
         if is_near {
@@ -305,17 +305,6 @@ fn at_reference([roll, pitch, yaw, thrust]: [f32; 4], [per_thrust, per_torque]: 
         yaw: yaw * per_torque,
         thrust: thrust * per_thrust,
     }
-}
-
-/// True where efforts are those `wanted` within `tolerance`.
-#[inline(always)]
-fn is_within(given: [f32; 2], wanted: [f32; 2], tolerance: [f32; 2]) -> bool {
-    let mut within = true;
-    for ((given, wanted), tolerance) in given.iter().zip(wanted).zip(tolerance) {
-        let missed = given - wanted;
-        within &= missed <= tolerance && missed >= -tolerance;
-    }
-    within
 }
 
 /// Contents of a [`Mix`], for code that is generic over airframes and does not know the number of

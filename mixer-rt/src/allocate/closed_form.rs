@@ -37,6 +37,7 @@ use core::hint::black_box;
 
 use crate::Wrench;
 use crate::allocate::priorities::Airmode;
+use crate::{larger, smaller};
 
 /// The largest number of units.
 const MOST_CLOSED_FORM_UNITS: usize = 4;
@@ -258,12 +259,10 @@ impl ClosedForm<'_> {
     /// The most thrust that may be given, and a thrust well inside below it, N.
     #[inline(always)]
     fn thrust_limits(&self, airmode: Airmode, asked: f32) -> [f32; 2] {
-        let mut ceiling = f32::MAX;
-        if airmode == Airmode::Disabled {
-            let floor = self.thrust_floor_n;
-            ceiling = if asked > floor { asked } else { floor };
-        }
-        let middle = self.thrust_middle_n;
-        [ceiling, if ceiling < middle { ceiling } else { middle }]
+        let ceiling = match airmode {
+            Airmode::Disabled => larger(asked, self.thrust_floor_n),
+            _ => f32::MAX,
+        };
+        [ceiling, smaller(ceiling, self.thrust_middle_n)]
     }
 }

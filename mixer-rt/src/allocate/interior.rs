@@ -263,7 +263,7 @@ impl<K: Kinds, S: AllocationMethod, const VERTICAL: bool> Frame<'_, '_, K, S, VE
 
 /// True where no row is missed by more than `most`.
 #[inline(always)]
-fn is_met(missed: &[f32; 4], most: f32) -> bool {
+pub(super) fn is_met(missed: &[f32; 4], most: f32) -> bool {
     missed.iter().all(|row| row.abs() <= most)
 }
 

@@ -59,9 +59,7 @@ impl<K: Kinds, S: AllocationMethod, const VERTICAL: bool> Frame<'_, '_, K, S, VE
     /// Notes what a unit gives; true where it is what was asked, within the inverse map's tolerance.
     #[inline(always)]
     pub(super) fn gives(&self, given: [f32; 2], state: &mut UnitState) -> bool {
-        let [thrust, torque] = self.tables.tolerance.efforts;
-        let asked = replace(&mut state.efforts, given);
-        (given[0] - asked[0]).abs() <= thrust && (given[1] - asked[1]).abs() <= torque
+        self.tables.tolerance.allows(given, replace(&mut state.efforts, given))
     }
 
     /// The guard, where the interior point method has not met the rows: the largest share of roll and pitch, then of

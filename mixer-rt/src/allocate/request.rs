@@ -125,7 +125,7 @@ impl Request {
             *asked *= row;
         }
         let limit = TORQUE_LIMIT * n;
-        let yaw_limit = if ratio > 1.0 { limit * ratio } else { limit };
+        let yaw_limit = limit * larger(ratio, 1.0);
         let thrusts = THRUST_LIMITS.map(|end| end * n);
         let [roll, pitch, turn, thrust] = limited(asked, limit, yaw_limit, thrusts);
         let is_level = roll.abs() < LEVEL && pitch.abs() < LEVEL;

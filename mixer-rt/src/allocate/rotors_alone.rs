@@ -15,6 +15,7 @@
 
 use super::closed_form::AllocationMethod;
 use super::frame::Frame;
+use super::interior::is_met;
 use super::system::{Factors, Products};
 use super::unit::UnitState;
 use crate::pair::alone::LEAST_RISE;
@@ -28,9 +29,6 @@ const TANGENTS: [u32; 2] = [2, 3];
 
 /// Multipliers beyond this are of rows that the frame does not serve.
 const UNSERVED: f32 = 100.0;
-
-/// Least square of the root that extends a tangent to a parabola: a step back to a fifth of the slope.
-const LEAST_SQUARE: f32 = 0.04;
 
 impl<K: Kinds, S: AllocationMethod, const VERTICAL: bool> Frame<'_, '_, K, S, VERTICAL> {
     /// Writes throttles that are nearest those of the whole frame; true where they give the wrench.
@@ -74,7 +72,7 @@ impl<K: Kinds, S: AllocationMethod, const VERTICAL: bool> Frame<'_, '_, K, S, VE
                 Products::<VERTICAL>::add(&unit.columns, [f * f, f * q, q * q], &mut system);
             }
             lambda = Factors::of(&system).solve(missed);
-            if !lambda.iter().all(|row| row.abs() <= UNSERVED) {
+            if !is_met(&lambda, UNSERVED) {
                 break;
             }
             for unit in rolled(units.iter_mut()) {
@@ -89,14 +87,14 @@ impl<K: Kinds, S: AllocationMethod, const VERTICAL: bool> Frame<'_, '_, K, S, VE
                 unit.efforts = [unit.efforts[0] + f * moved, unit.efforts[1] + q * moved];
                 // The throttle of that thrust: exact for a parabola.
                 let step = moved + unit.targets[side] - unit.throttles[side];
-                let rooted = 0.5 + 0.5 * sqrt(larger(1.0 + unit.curvature_per_slope * step, LEAST_SQUARE));
+                let rooted = 0.5 + 0.5 * sqrt(larger(1.0 + unit.curvature_per_slope * step, 0.0));
                 unit.throttles[side] = self
                     .tables
                     .throttle
                     .clamp(unit.throttles[side] + divided(step, rooted));
             }
         }
-        let is_regular = lambda.iter().all(|row| row.abs() <= UNSERVED);
+        let is_regular = is_met(&lambda, UNSERVED);
         let mut is_served = is_regular;
         for (index, unit) in rolled(units.iter_mut().enumerate()) {
             if let Some(pair) = self.pair_of(index, unit) {

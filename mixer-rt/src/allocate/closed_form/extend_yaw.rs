@@ -16,7 +16,7 @@ use core::hint::black_box;
 
 use super::thrusts::furthest;
 use super::{Border, ClosedForm, MOST_CLOSED_FORM_UNITS, Outline, ThrustLine};
-use crate::{divisor, rolled};
+use crate::{divisor, rolled, smaller};
 
 /// Most steps towards the largest yaw. The second is twice as long as a straight line asks for.
 const EXTENSIONS: u32 = 2;
@@ -101,7 +101,7 @@ impl ClosedForm<'_> {
             } else {
                 0.0
             };
-            part = if part < 1.0 { part } else { 1.0 };
+            part = smaller(part, 1.0);
             part *= if gain < whole { gain / whole } else { 1.0 };
             z += part * (top - z);
             reach = self.reach(lines, z);
@@ -164,10 +164,8 @@ impl ClosedForm<'_> {
             }
             ahead.look();
         }
-        // Growth that is rounding only is none.
-        let level = self.yaw_rounding_nm / self.thrust_n[1];
         let mut way = 0.0;
-        while growth > level {
+        while growth > 0.0 {
             black_box(());
             way = end;
             let mut nearest = None;

@@ -12,7 +12,7 @@
 use core::hint::black_box;
 
 use super::{ClosedForm, Facets, Steep};
-use crate::{clamp, divisor, quotient, rolled};
+use crate::{clamp, divisor, quotient, rolled, smaller};
 
 /// A gap between thrust bounds that is below this share of a unit's largest thrust is none: sums of
 /// four have errors of that size.
@@ -25,7 +25,7 @@ impl Facets {
 
 impl ClosedForm<'_> {
     /// The largest share of (roll, pitch) up to 1 that some thrust of at most `ceiling` allows, and
-    /// the thrusts that it allows, where `thrust` is asked.
+    /// the thrusts that it allows, where `thrust` is asked; by rounding the least may be above the most, which counts.
     #[inline(always)]
     pub(super) fn share(&self, roll: f32, pitch: f32, thrust: f32, ceiling: f32) -> (f32, [f32; 2]) {
         let mut share = 1.0;
@@ -33,8 +33,7 @@ impl ClosedForm<'_> {
             let speed = normal[0] * roll + normal[1] * pitch;
             let limit = if speed > 0.0 { bounds[1] } else { bounds[0] };
             if speed > bounds[1] || speed < bounds[0] {
-                let most = quotient(limit, speed);
-                share = if most < share { most } else { share };
+                share = smaller(quotient(limit, speed), share);
             }
         }
         for Steep { facets, thrusts_n } in rolled(self.steep) {
@@ -43,11 +42,9 @@ impl ClosedForm<'_> {
             let [least, most] = thrusts_n[side];
             let limit = facets.bounds[side] - clamp(thrust, least, most);
             if speed.abs() > limit.abs() {
-                let most = quotient(limit, speed);
-                share = if most < share { most } else { share };
+                share = smaller(quotient(limit, speed), share);
             }
         }
-        share = if share > 0.0 { share } else { 0.0 };
         let mut range = [0.0, 0.0];
         for _ in 0..black_box(Facets::STEPS) {
             // Thrust bounds at this share, and their velocities.
@@ -64,17 +61,11 @@ impl ClosedForm<'_> {
                 }
             }
             range = [low, high];
-            // Where these two lines meet: the gap closes as the share shrinks.
-            let closing = low_speed - high_speed;
-            let met = share - (low - high) / divisor(closing);
             if low - high <= ROUNDING * self.thrust_n[1] {
                 break;
             }
-            share = if closing > 0.0 && met > 0.0 { met } else { 0.0 };
-        }
-        if range[0] > range[1] {
-            // Left by rounding only.
-            range = [range[1], range[1]];
+            // Where these two lines meet: between 0 and here, as the gap is convex in the share and closed at 0.
+            share -= (low - high) / divisor(low_speed - high_speed);
         }
         (share, range)
     }

@@ -14,7 +14,7 @@ use core::hint::black_box;
 
 use super::thrusts::furthest;
 use super::{ClosedForm, MOST_CLOSED_FORM_UNITS, ThrustLine};
-use crate::{clamp, divisor, rolled};
+use crate::{clamp, divisor, larger, rolled, smaller};
 
 /// Most steps to where yaw reaches what is needed. Steps inwards are twice as long as a straight
 /// line asks for.
@@ -77,7 +77,7 @@ impl ClosedForm<'_> {
         let mut at = 1.0;
         for _ in 0..black_box(ROUNDS) {
             let [low, high] = self.null_range(lines, &roomy);
-            let high = if high > low { high } else { low };
+            let high = larger(high, low);
             let top = self.top(lines, sign, clamp(z, low, high), [low, high]);
             let most = furthest(self.reach(lines, top), sign);
             for (line, given) in rolled(lines.iter_mut().zip(given)) {
@@ -107,10 +107,9 @@ impl ClosedForm<'_> {
         needed: f32,
         [inside, outside]: [f32; 2],
     ) -> (f32, [f32; 2]) {
-        let inside = if inside > 0.0 { inside } else { 0.0 };
+        let inside = larger(inside, 0.0);
         // Outside by a little at least, so that no division is by zero.
-        let least = -self.yaw_rounding_nm;
-        let outside = if outside < least { outside } else { least };
+        let outside = smaller(outside, -self.yaw_rounding_nm);
         let mut at = inside / (inside - outside);
         for step in 0..black_box(CROSSINGS) {
             let reach = self.reach(lines, at);

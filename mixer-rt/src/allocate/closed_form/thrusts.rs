@@ -4,7 +4,7 @@
 //! does not reach what is needed of it, thrust, roll and pitch are given up: keep_yaw.rs.
 
 use super::{Asked, ClosedForm, ClosedFormUnit, ThrustLine};
-use crate::{clamp, rolled};
+use crate::{clamp, larger, rolled, smaller};
 
 impl ClosedFormUnit {
     /// The least-norm thrust, N, for `[roll, pitch, thrust]`.
@@ -40,7 +40,7 @@ impl ClosedForm<'_> {
         let [low, high] = self.null_range(lines, &wrench);
         // Where the facets change roll, pitch or thrust, z has no room.
         let has_room = share == 1.0 && thrust == request.thrust;
-        let mut z = clamp(0.0, low, if high > low { high } else { low });
+        let mut z = clamp(0.0, low, larger(high, low));
         let mut reach = self.reach(lines, z);
         // The limit of yaw that the request violates, if any.
         let sign = if request.yaw > reach[1] {
@@ -51,17 +51,17 @@ impl ClosedForm<'_> {
             return (z, reach);
         };
         let wanted = sign * request.yaw;
-        if has_room && high > low {
+        if has_room {
             (z, reach) = self.extend_yaw(lines, sign, (z, reach), [low, high], wanted);
         }
         // Up to the reserve yaw comes before thrust.
-        let kept = if wanted < reserve { wanted } else { reserve };
+        let kept = smaller(wanted, reserve);
         if KEEPS_YAW && kept > furthest(reach, sign) {
             wrench[2] = clamp(middle, range[0], range[1]);
             (z, reach) = self.keep_reserve(lines, sign, (z, reach), kept, &wrench);
         }
         // Beyond zero yaw is reversed, beyond the request it is exceeded.
-        let needed = if wanted < 0.0 { wanted } else { 0.0 };
+        let needed = smaller(wanted, 0.0);
         if needed - furthest(reach, sign) > self.yaw_rounding_nm {
             (z, reach) = self.bound_yaw(lines, sign, (z, reach), needed, middle);
         }
@@ -91,8 +91,7 @@ impl ClosedForm<'_> {
             (line.from, line.along) = (f, unit.null);
             if unit.per_null != 0.0 {
                 let [from, to] = unit.ends.map(|end| (end - f) * unit.per_null);
-                low = if from > low { from } else { low };
-                high = if to < high { to } else { high };
+                (low, high) = (larger(from, low), smaller(to, high));
             }
         }
         if high == f32::MAX {

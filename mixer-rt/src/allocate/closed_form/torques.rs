@@ -27,7 +27,7 @@ impl ClosedForm<'_> {
         let missing = yaw - given;
         let end = if missing < 0.0 { reach[0] } else { reach[1] };
         // Zero where there is no room.
-        let part = clamp(quotient(missing, end - given), 0.0, 1.0);
+        let part = quotient(missing, end - given);
         for ((unit, effort), line) in rolled(self.units.iter().zip(efforts).zip(lines)) {
             let p = effort.torque;
             let end = if missing < 0.0 { line.least } else { line.most };
