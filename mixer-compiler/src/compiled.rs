@@ -6,7 +6,7 @@ use crate::dynamics::Dynamics;
 use crate::inverse::evaluator::Evaluator;
 use crate::model::effectiveness::Effectiveness;
 use crate::model::injectivity::Injectivity;
-use crate::model::{self, PairMap, Physics};
+use crate::model::{PairMap, Physics};
 use crate::proof::Certificate;
 use crate::proof::residual::Residual;
 use crate::tables::MixerTables;
@@ -74,11 +74,6 @@ impl Compiled {
             airframe: &self.airframe,
             maps: &self.maps,
         }
-    }
-
-    /// [`model::mean`](crate::model::mean) of the units' maps.
-    pub fn mean_map(&self) -> PairMap {
-        model::mean(&self.airframe, &self.maps)
     }
 
     /// How pairs are inverted, and their basis; `None` where no unit is one.

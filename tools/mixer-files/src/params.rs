@@ -12,7 +12,7 @@ use mixer_compiler::diagnostic::{commented, printable_lines, wrapped};
 pub use crate::params::parameter::bench_pulses;
 use crate::params::parameter::{PULSES_US, Parameter, Parameters};
 use crate::params::writer::Writer;
-pub use crate::params::writer::{Format, Options};
+pub use crate::params::writer::{Betaflight, Format, Options};
 pub use crate::stacks::stack::Stack;
 use crate::stacks::{px4, writer};
 

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use mixer_files::params::Stack;
-use mixer_files::params::{Format, Options, params};
+use mixer_files::params::{Betaflight, Format, Options, params};
 
 use crate::bench_args::{pwm_range, words};
 use crate::{Done, file, print_error};
@@ -38,6 +38,9 @@ pub struct ParamsArgs {
     /// that identify needed]
     #[arg(long, value_name = "LOW,HIGH", value_parser = pwm_range)]
     pwm_range: Option<[f64; 2]>,
+    /// Betaflight's version, or the last one before it
+    #[arg(long, value_parser = words(&Betaflight::ALL), default_value = "2026.6")]
+    version: Betaflight,
     /// The file to write; without it stdout
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -54,6 +57,7 @@ pub fn run(args: &ParamsArgs) -> Done {
         format: args.format,
         own: args.own,
         pulses_us: args.pwm_range,
+        betaflight: args.version,
     };
     let name = args.airframe.file_name().unwrap_or_default().to_string_lossy();
     let made = params(&compiled, &name, &options).map_err(print_error)?;

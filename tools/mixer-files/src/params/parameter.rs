@@ -4,6 +4,8 @@ use std::fmt;
 
 use mixer_compiler::Compiled;
 use mixer_compiler::airframe::{Airframe, Pair};
+use mixer_compiler::model::equal_throttle;
+use mixer_rt::Health;
 
 /// A parameter of a flight stack.
 #[derive(Clone, Debug)]
@@ -121,35 +123,159 @@ pub fn bench_pulses(airframe: &Airframe) -> Option<[f64; 2]> {
     first.filter(|_| all.all(|other| other == first))
 }
 
-/// To two decimals.
-pub(crate) fn hundredths(value: f64) -> f64 {
-    (100.0 * value).round() / 100.0
+/// How a stack's own mixer makes throttles of the shares of the largest thrust that it asks rotors for.
+#[derive(Clone, Copy)]
+pub(crate) struct OwnCurve {
+    /// Throttles of the shares 0 and 1.
+    pub range: [f64; 2],
+    /// The share of that range for a factor of the curve and a share of the thrust.
+    pub output: fn(f64, f64) -> f64,
+    /// The share of the thrust that the mixer takes for that share of the range.
+    pub share: fn(f64, f64) -> f64,
 }
 
-/// Points at which a curve is fitted.
-const POINTS: u32 = 50;
+/// Why a fitted factor of a stack's curve has its value.
+pub(crate) const STEADIEST: &str = "Fitted: with it the thrust changes least while the frame yaws in hover.";
 
-/// The a in [0, 1] with which a t^2 + (1 - a) t is nearest to the share of the largest thrust that
-/// both rotors give at the throttle t, least squares over the airframe's range; both stacks
-/// describe a rotor by this curve. `stretched` counts t from 0 at the least throttle to 1 at the
-/// largest.
-pub(crate) fn curve(compiled: &Compiled, stretched: bool) -> f64 {
-    let map = compiled.mean_map();
-    let [min, max] = map.range();
-    let full = map.efforts([max, max])[0];
-    let (mut products, mut squares) = (0.0, 0.0);
-    for k in 0..=POINTS {
-        let share = f64::from(k) / f64::from(POINTS);
-        let throttle = min + (max - min) * share;
-        let t = if stretched { share } else { throttle };
-        let bend = t * t - t;
-        products += bend * (map.efforts([throttle, throttle])[0] / full - t);
-        squares += bend * bend;
+/// Rises of a throttle for which a factor is judged.
+const RISES: u32 = 8;
+
+/// The largest of them: by a third of the throttle in hover one rotor of a pair rises and its partner falls by more.
+const LARGEST_RISE: f64 = 1.0 / 3.0;
+
+/// Step of a share for a slope.
+const STEP: f64 = 1e-4;
+
+impl OwnCurve {
+    /// That of PX4's `THR_MDL_FAC` (`FunctionMotors.hpp`) and ArduPilot's `MOT_THST_EXPO` (`AP_Motors_Thrust_Linearization.cpp`): the
+    /// share is a t^2 + (1 - a) t.
+    pub(crate) fn parabola(range: [f64; 2]) -> OwnCurve {
+        let output = |a: f64, share: f64| {
+            let b = 1.0 - a;
+            let root = libm::sqrt(b * b + 4.0 * a * share);
+            // Without a division by a or 0.
+            2.0 * share / (b + root).max(f64::MIN_POSITIVE)
+        };
+        OwnCurve {
+            range,
+            output,
+            share: |a, t| a * t * t + (1.0 - a) * t,
+        }
     }
-    (products / squares).clamp(0.0, 1.0)
+
+    /// The factor in [0, 1], to two decimals, with which the frame's thrust changes least while it yaws: rotors of one spin rise
+    /// from hover, or from half of the largest thrust where the mass is not known, by up to a third of their throttle, and the
+    /// others fall by the same share of the thrust. Least squares.
+    pub(crate) fn steadiest(&self, compiled: &Compiled) -> f64 {
+        let physics = compiled.physics();
+        let [idle, top] = self.range;
+        let spins: Vec<f64> = compiled.px4_rotors().iter().map(|rotor| rotor[7]).collect();
+        let full_n = physics.wrench(&vec![top; spins.len()], [1.0; 2], Health::GOOD)[3];
+        let half = || equal_throttle(physics.airframe, physics.maps, 0.5 * full_n);
+        let hover = compiled.equal_hover_throttle().or_else(half);
+        let hover = self.of_range(hover.unwrap_or(0.5 * top));
+        let change = |a: f64, rise: f64, sense: f64| {
+            let level = (self.share)(a, hover);
+            let yaw = (self.share)(a, hover + rise) - level;
+            let throttle = |spin: &f64| {
+                let share = level + yaw * sense * spin.signum();
+                idle + (top - idle) * (self.output)(a, share.max(0.0))
+            };
+            let throttles: Vec<f64> = spins.iter().map(throttle).collect();
+            physics.wrench(&throttles, [1.0; 2], Health::GOOD)[3]
+        };
+        let error = |percent: &u32| {
+            let a = f64::from(*percent) / 100.0;
+            let level_n = change(a, 0.0, 1.0);
+            let largest = (LARGEST_RISE * hover).min(1.0 - hover);
+            let rises = (1..=RISES).map(|k| largest * f64::from(k) / f64::from(RISES));
+            let changes =
+                rises.flat_map(|rise| [1.0, -1.0].map(|sense| change(a, rise, sense) / level_n - 1.0));
+            changes.map(|change| change * change).sum::<f64>()
+        };
+        let best = (0..=100).min_by(|a, b| error(a).total_cmp(&error(b)));
+        best.map_or(0.0, |percent| f64::from(percent) / 100.0)
+    }
+
+    /// The share of the largest thrust that the mixer asks for in hover, by a factor of its curve.
+    pub(crate) fn hover(&self, compiled: &Compiled, factor: f64) -> Option<f64> {
+        let throttle = compiled.equal_hover_throttle()?;
+        Some((self.share)(factor, self.of_range(throttle)))
+    }
+
+    /// Slope in hover of the thrust over the request, both shares of the largest thrust, by a factor of the curve.
+    pub(crate) fn slope_in_hover(&self, compiled: &Compiled, factor: f64) -> Option<f64> {
+        let hover = self.hover(compiled, factor)?;
+        let [idle, top] = self.range;
+        let rise = (self.output)(factor, hover + STEP) - (self.output)(factor, hover - STEP);
+        Some(compiled.slope_in_hover()? * (top - idle) * rise / (2.0 * STEP))
+    }
+
+    fn of_range(&self, throttle: f64) -> f64 {
+        let [idle, top] = self.range;
+        (throttle - idle) / (top - idle)
+    }
 }
 
-/// Value of such a curve.
-pub(crate) fn on_curve(a: f64, t: f64) -> f64 {
-    a * t * t + (1.0 - a) * t
+/// The note on `gains` that were tuned with a stack's own mixer: `stock` and `fitted` are the slopes of its thrust in hover as it comes
+/// (`settings`) and by what `--own` writes, over that of this mixer.
+pub(crate) fn gains_note(gains: &str, settings: &str, [stock, fitted]: [Option<f64>; 2]) -> String {
+    match stock.zip(fitted) {
+        Some((stock, fitted)) => format!(
+            "{gains}: for the same loop gain those that were tuned with {settings} are multiplied by {stock:.3}, those that were tuned \
+             with what `params --own` writes by {fitted:.3}, the slopes of the thrust over the request in hover"
+        ),
+        None => format!(
+            "{gains}: which factor keeps the loop gain is known with `[vehicle] mass_kg` in the airframe file; one unit of yaw is then \
+             the slope in hover"
+        ),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use mixer_compiler::Source;
+
+    use super::*;
+
+    /// Rotors that take no notice of each other, each with 9 d^2 + 6 d.
+    fn isolated() -> Compiled {
+        let text = "name = \"a\"\n[throttle]\nmin = 0.1\nmax = 1.0\n[vehicle]\nmass_kg = 3.0\n\
+                    [pair]\nbasis = \"cubic\"\nupper_spin = \"cw\"\n\
+                    thrust_n = [0, 0, 0, 0, 9, 0, 9, 6, 6]\ntorque_nm = [0, 0, 0, 0, -0.18, 0, 0.18, -0.12, 0.12]\n\
+                    [layout]\narm_m = 0.4\nunits = 4\nfirst_angle_deg = 45.0\n";
+        mixer_compiler::compile(&Source::new("a.toml", text)).unwrap()
+    }
+
+    /// They have one factor with which yaw leaves the thrust alone: that of their curve over the range of the stack.
+    #[test]
+    fn of_isolated_rotors_the_factor_is_that_of_their_curve() {
+        let compiled = isolated();
+        for [idle, top] in [[0.0, 1.0], [0.15, 1.0], [0.1, 0.95]] {
+            // 9 d^2 + 6 d at d = idle + (top - idle) t.
+            let (square, line) = (
+                9.0 * (top - idle) * (top - idle),
+                (top - idle) * (6.0 + 18.0 * idle),
+            );
+            let curve = OwnCurve::parabola([idle, top]);
+            let factor = curve.steadiest(&compiled);
+            assert!(
+                (factor - square / (square + line)).abs() <= 0.005,
+                "{idle}: {factor}"
+            );
+        }
+    }
+
+    /// A mixer that has the rotors' curve makes of a request its share of the thrust.
+    #[test]
+    fn with_the_rotors_curve_the_slope_is_one() {
+        let compiled = isolated();
+        let curve = OwnCurve::parabola([0.0, 1.0]);
+        let slopes = [0.6, 0.0].map(|factor| curve.slope_in_hover(&compiled, factor).unwrap());
+        assert!((slopes[0] - 1.0).abs() < 1e-4, "{slopes:?}");
+        assert!(
+            (slopes[1] - compiled.slope_in_hover().unwrap()).abs() < 1e-6,
+            "{slopes:?}"
+        );
+    }
 }

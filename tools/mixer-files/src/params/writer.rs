@@ -18,6 +18,8 @@ pub struct Options {
     /// Pulse widths of throttle 0 and 1 on the bench, microseconds; without them those that the
     /// airframe remembers.
     pub pulses_us: Option<[f64; 2]>,
+    /// Whose names of settings and whose curve are Betaflight's.
+    pub betaflight: Betaflight,
 }
 
 impl Options {
@@ -28,6 +30,44 @@ impl Options {
             format: Format::GroundStation,
             own: false,
             pulses_us: None,
+            betaflight: Betaflight::V2026_6,
+        }
+    }
+}
+
+/// A version of Betaflight, up to the next one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Betaflight {
+    /// 4.5.
+    V4_5,
+    /// 2025.12, which renamed settings.
+    V2025_12,
+    /// 2026.6, which changed the curve of `thrust_linear`.
+    V2026_6,
+}
+
+impl Betaflight {
+    /// All, each with its word on the command line and what it is.
+    #[rustfmt::skip]
+    pub const ALL: [(Betaflight, &'static str, &'static str); 3] = [
+        (Betaflight::V4_5, "4.5", "`dshot_idle_value`, `gps_rescue_throttle_hover`"),
+        (Betaflight::V2025_12, "2025.12", "`motor_idle`, `ap_hover_throttle`"),
+        (Betaflight::V2026_6, "2026.6", "the same, another curve of `thrust_linear`"),
+    ];
+
+    /// The setting of the idle.
+    pub(crate) fn idle(self) -> &'static str {
+        match self {
+            Betaflight::V4_5 => "dshot_idle_value",
+            _ => "motor_idle",
+        }
+    }
+
+    /// The setting of the throttle in hover.
+    pub(crate) fn hover(self) -> &'static str {
+        match self {
+            Betaflight::V4_5 => "gps_rescue_throttle_hover",
+            _ => "ap_hover_throttle",
         }
     }
 }

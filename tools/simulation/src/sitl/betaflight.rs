@@ -1,5 +1,5 @@
 //! Betaflight's interface for outside simulators (`src/platform/SIMULATOR/sitl.c`): motors in, state and sticks out, over UDP, in
-//! the time of the wall clock. MSP tells what keeps it from arming.
+//! the time of the wall clock times the speed of the simulation, which Betaflight takes from the states' times (`simRate`). MSP tells what keeps it from arming.
 
 pub mod arming;
 pub mod packets;
@@ -29,7 +29,7 @@ const STICKS_US: u64 = 10_000;
 /// Silence after which Betaflight has gone.
 const SILENCE: Duration = Duration::from_secs(10);
 
-/// Behind real time by this a step is late, and where Betaflight's motors are as old.
+/// Behind the clock by this, in simulated time, a step is late, and where Betaflight's motors are as old.
 const LATE: Duration = Duration::from_millis(20);
 
 /// The name under which the record counts late steps.
@@ -41,10 +41,14 @@ const MOST_LATE: f64 = 0.001;
 /// The port of the motors, and a pilot with sticks.
 ///
 /// # Errors
-/// A port that is taken; another speed than that of the wall clock.
+/// A port that is taken; a speed of 0 or above that of the wall clock.
 pub fn open(arguments: &Arguments, hover_throttle: f64) -> Result<Port, String> {
-    if arguments.speed != 1.0 {
-        return Err("--speed: Betaflight's time is that of the wall clock".to_owned());
+    let speed = arguments.speed;
+    if !(speed > 0.0 && speed <= 1.0) {
+        return Err(
+            "--speed: Betaflight has a clock, which runs at that of the wall (1) or slower, as 0.25"
+                .to_owned(),
+        );
     }
     let port = arguments.port.unwrap_or(PORT);
     let socket = link::listen(port, None, "Betaflight", "")?;
@@ -53,7 +57,7 @@ pub fn open(arguments: &Arguments, hover_throttle: f64) -> Result<Port, String> 
         name: "Betaflight on UDP",
         address: socket.local_addr(),
         pilot: Box::new(Sticks::new(hover_throttle, arguments)),
-        serve: Box::new(move |flight, sensors| serve(&socket, port, flight, sensors, pulses)),
+        serve: Box::new(move |flight, sensors| serve(&socket, port, flight, sensors, pulses, speed)),
     })
 }
 
@@ -64,6 +68,7 @@ fn serve(
     flight: &mut Flight,
     sensors: &mut Sensors,
     pulses: [f64; 2],
+    speed: f64,
 ) -> Result<End, String> {
     let send = |further: u16, values: &[u8]| {
         // Nobody may be there yet.
@@ -71,7 +76,7 @@ fn serve(
     };
     let (mut throttles, mut heard, mut late, mut steps) = (Throttles::zeros(), None::<Instant>, 0, 0);
     let mut bytes = [0; 512];
-    let begun = Instant::now();
+    let (begun, late_by) = (Instant::now(), LATE.div_f64(speed));
     loop {
         while let Ok(count) = socket.recv(&mut bytes) {
             if let Some(new) = motors(&bytes[..count], pulses) {
@@ -92,8 +97,9 @@ fn serve(
             send(STICKS, &channels(flight.world.time_s(), &pilot.sticks()));
         }
         steps += 1;
-        let is_behind = begun.elapsed() > Duration::from_micros(flight.world.time_us) + LATE;
-        late += u64::from(is_behind || heard.is_some_and(|heard| heard.elapsed() > LATE));
+        let is_behind =
+            begun.elapsed() > Duration::from_micros(flight.world.time_us).div_f64(speed) + late_by;
+        late += u64::from(is_behind || heard.is_some_and(|heard| heard.elapsed() > late_by));
         match end {
             Ok(None) => {}
             Ok(Some(end)) => {
@@ -112,7 +118,7 @@ fn in_time(late: u64, steps: u64) -> Result<(), String> {
     }
     Err(format!(
         "{late} of {steps} {LATE_STEPS}: sitl or Betaflight had no processor, and what was flown is \
-         not the mixer's. On a machine with other work, run both under `chrt -f 50`"
+         not the mixer's. On a machine with other work, let time pass more slowly: `--speed 0.25`"
     ))
 }
 

@@ -10,7 +10,7 @@ use mavlink::dialects::common::{
 use super::arguments::Arguments;
 use super::link::Link;
 use super::messages::{Texts, attitude, heartbeat, position};
-use super::plan::{Manoeuvre, Plan, Target};
+use super::plan::{Hold, Manoeuvre, Plan, Target};
 use super::world::World;
 
 /// How a flight stack is flown by MAVLink.
@@ -266,11 +266,10 @@ impl Station {
         if takes_targets && is_due(&mut self.target_s, time_s, TARGET_S) {
             let target = self.wanted(time_s).unwrap_or_default();
             let level = self.stack.level_thrust.unwrap_or(self.thrust_setpoint as f32);
-            let thrust = if target.is_climb { 1.0 } else { level };
-            self.link.send(&if target.roll_deg == 0.0 && !target.is_climb {
-                position(target, HEIGHT_M, peer, time_s)
-            } else {
-                attitude(target, thrust, peer, time_s)
+            self.link.send(&match target.hold {
+                Hold::Place => position(target, HEIGHT_M, peer, time_s),
+                Hold::Attitude => attitude(target, level, peer, time_s),
+                Hold::FullThrust => attitude(target, 1.0, peer, time_s),
             });
         }
         Ok(())

@@ -29,10 +29,22 @@ pub struct Target {
     pub offset: Vector3<f64>,
     /// Heading, degrees.
     pub yaw_deg: f64,
-    /// Roll, degrees; unless it is 0, the attitude is asked for and no place.
+    /// Roll, degrees.
     pub roll_deg: f64,
-    /// Level at full thrust: no place is asked for.
-    pub is_climb: bool,
+    /// What is held.
+    pub hold: Hold,
+}
+
+/// What is asked for beside the heading.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Hold {
+    /// The place.
+    #[default]
+    Place,
+    /// The attitude, at the thrust of hover.
+    Attitude,
+    /// The attitude, at full thrust.
+    FullThrust,
 }
 
 /// Targets from a time of the manoeuvre on, and its end.
@@ -44,48 +56,50 @@ pub struct Plan {
     pub end_s: f64,
 }
 
-/// Time of the first step, s: before it the hover is measured.
-pub const FIRST_S: f64 = 5.0;
+/// Time of the first step, s: before it the vehicle comes to rest, and the hover is measured.
+pub const FIRST_S: f64 = 20.0;
 
 /// End of a manoeuvre without steps, s.
 const HOVER_S: f64 = 30.0;
 
-/// Time from one step to the next, s, and from one in roll and in a climb: the vehicle gathers speed.
+/// Time from one step to the next, s, by what is held: without a place the vehicle gathers speed.
 const BETWEEN_S: f64 = 8.0;
-const ROLL_S: f64 = 1.0;
+const ATTITUDE_S: f64 = 1.0;
 const CLIMB_S: f64 = 4.0;
 
 impl Manoeuvre {
     /// When what is asked for.
     pub fn plan(self) -> Plan {
-        const HOME: [f64; 5] = [0.0; 5];
-        let yaw = |degrees| [0.0, 0.0, 0.0, degrees, 0.0];
-        let roll = |degrees| [0.0, 0.0, 0.0, 0.0, degrees];
-        let targets: &[[f64; 5]] = match self {
-            Manoeuvre::Hover => &[],
-            Manoeuvre::Steps => &[[0.0, 0.0, 3.0, 0.0, 0.0], HOME, [4.0, 0.0, 0.0, 0.0, 0.0], HOME],
-            Manoeuvre::Yaw => &[90.0, 0.0, -90.0, 0.0, 175.0, 0.0, -175.0, 0.0].map(yaw),
-            Manoeuvre::Sidestep => &[[0.0, 6.0, 0.0, 90.0, 0.0], HOME, [0.0, 6.0, 0.0, 0.0, 0.0], HOME],
-            Manoeuvre::Roll => &[15.0, 0.0, -15.0, 0.0, 15.0, 0.0, -15.0, 0.0].map(roll),
-            Manoeuvre::Climb => &[HOME, yaw(90.0), HOME, yaw(-90.0)],
+        let to = |north, east, up, yaw_deg| Target {
+            offset: Vector3::new(north, east, up),
+            yaw_deg,
+            ..Target::default()
+        };
+        let home = Target::default();
+        let yaw = |yaw_deg| to(0.0, 0.0, 0.0, yaw_deg);
+        let holding = |hold, target| Target { hold, ..target };
+        // A controller of the place asks for a tilt of its own until its last setpoint is replaced: a step in attitude begins at an
+        // attitude.
+        let level = holding(Hold::Attitude, home);
+        let roll = |roll_deg| [level, Target { roll_deg, ..level }, home];
+        let climb = |yaw_deg| holding(Hold::FullThrust, yaw(yaw_deg));
+        let targets = match self {
+            Manoeuvre::Hover => Vec::new(),
+            Manoeuvre::Steps => vec![to(0.0, 0.0, 3.0, 0.0), home, to(4.0, 0.0, 0.0, 0.0), home],
+            Manoeuvre::Yaw => [90.0, 0.0, -90.0, 0.0, 175.0, 0.0, -175.0, 0.0].map(yaw).to_vec(),
+            Manoeuvre::Sidestep => vec![to(0.0, 6.0, 0.0, 90.0), home, to(0.0, 6.0, 0.0, 0.0), home],
+            Manoeuvre::Roll => [15.0, -15.0, 15.0, -15.0].map(roll).concat(),
+            Manoeuvre::Climb => vec![level, climb(0.0), climb(90.0), climb(0.0), climb(-90.0)],
             // The rotor stops at the first time.
-            Manoeuvre::Failure => &[HOME, yaw(90.0), HOME],
+            Manoeuvre::Failure => vec![home, yaw(90.0), home],
         };
         let mut end_s = FIRST_S;
-        let steps = targets.iter().map(|&[north, east, up, yaw_deg, roll_deg]| {
+        let steps = targets.into_iter().map(|target| {
             let begin_s = end_s;
-            let is_climb = self == Manoeuvre::Climb;
-            end_s += match roll_deg == 0.0 {
-                _ if is_climb => CLIMB_S,
-                true => BETWEEN_S,
-                false => ROLL_S,
-            };
-            let offset = Vector3::new(north, east, up);
-            let target = Target {
-                offset,
-                yaw_deg,
-                roll_deg,
-                is_climb,
+            end_s += match target.hold {
+                Hold::Place => BETWEEN_S,
+                Hold::Attitude => ATTITUDE_S,
+                Hold::FullThrust => CLIMB_S,
             };
             (begin_s, target)
         });

@@ -6,7 +6,7 @@
 use std::fmt;
 
 use super::flight::Flight;
-use super::plan::{FIRST_S, Plan, Target};
+use super::plan::{FIRST_S, Hold, Plan, Target};
 use super::record::{Record, Sample};
 use crate::state::wrapped;
 
@@ -110,7 +110,7 @@ fn name(from: &Target, to: &Target) -> Option<String> {
     if to.roll_deg != 0.0 {
         parts.push(format!("{} deg in roll", to.roll_deg.abs()));
     }
-    if to.is_climb && !parts.is_empty() {
+    if to.hold == Hold::FullThrust && !parts.is_empty() {
         parts.push("full thrust".to_owned());
     }
     (!parts.is_empty()).then(|| parts.join(", "))
@@ -152,7 +152,7 @@ impl Flown<'_> {
         let largest = |of: &dyn Fn(&Sample) -> f64| most(window().map(|(_, sample)| of(sample)));
         let error = |sample: &Sample| (height(sample) - height_m).abs();
         let offset = to.offset - from.offset;
-        let holds_height = offset.z == 0.0 && to.roll_deg == 0.0 && !to.is_climb;
+        let holds_height = offset.z == 0.0 && to.hold == Hold::Place;
         let square = |sample: &Sample| error(sample) * error(sample);
         let rms = self.mean(begin_s, begin_s + RMS_S, square)?.sqrt();
         let turn = to.yaw_deg - from.yaw_deg;
@@ -328,7 +328,7 @@ mod tests {
             }
         };
         let mut record = Record::default();
-        record.samples.extend((0..4000).map(sample));
+        record.samples.extend((0..8000).map(sample));
         record
     }
 
@@ -375,7 +375,7 @@ mod tests {
             .unwrap();
         assert!(step[0].is_nan() && step[1] == 0.0, "{step:?}");
         assert_eq!(
-            Flown(&record).step([13.0, 21.0], &turn(0.0), &turn(90.0), 10.0),
+            Flown(&record).step([FIRST_S + 8.0, FIRST_S + 16.0], &turn(0.0), &turn(90.0), 10.0),
             None
         );
     }
@@ -393,13 +393,17 @@ mod tests {
             [0.0, 5.0, 0.2 + roll]
         });
         let plan = Manoeuvre::Roll.plan();
-        assert_eq!(plan.steps.len(), 8);
-        assert_eq!((plan.steps[1].0, plan.steps[2].0, plan.end_s), (6.0, 14.0, 41.0));
-        let to = plan.steps[0].1;
-        let name = name(&Target::default(), &to);
-        assert_eq!(name.as_deref(), Some("15 deg in roll"));
+        let begins = [0, 1, 2, 3].map(|step: usize| plan.steps[step].0 - FIRST_S);
+        assert_eq!((begins, plan.end_s - FIRST_S), ([0.0, 1.0, 2.0, 10.0], 40.0));
+        // A second at an attitude goes before, so that what the step begins at is no setpoint of a place.
+        let [(_, from), (_, to)] = [plan.steps[0], plan.steps[1]];
+        assert_eq!(
+            (from.hold, name(&Target::default(), &from)),
+            (Hold::Attitude, None)
+        );
+        assert_eq!(name(&from, &to).as_deref(), Some("15 deg in roll"));
         let step = Flown(&record)
-            .step([5.0, 6.0], &Target::default(), &to, 10.0)
+            .step([FIRST_S, FIRST_S + 1.0], &from, &to, 10.0)
             .unwrap();
         assert!((step[0] - 13.5 / 33.0).abs() < 0.005, "{step:?}");
         assert!((step[1] - 10.0).abs() < 1e-6 && step[2].is_nan(), "{step:?}");
@@ -407,13 +411,20 @@ mod tests {
 
     #[test]
     fn a_turn_in_the_climb_has_no_height_to_hold() {
-        let record = flown(|t| [(90.0 * (t - 9.0)).clamp(0.0, 90.0), 5.0 * t, 0.0]);
+        let turn_s = FIRST_S + 5.0;
+        let record = flown(|t| [(90.0 * (t - turn_s)).clamp(0.0, 90.0), 5.0 * t, 0.0]);
         let plan = Manoeuvre::Climb.plan();
-        let [(begin_s, from), (turn_s, to)] = [plan.steps[0], plan.steps[1]];
-        assert!((begin_s, turn_s, plan.end_s) == (5.0, 9.0, 21.0) && from.is_climb);
-        assert_eq!(name(&Target::default(), &from), None);
+        let [(_, level), (begin_s, from), (begins_s, to)] = [plan.steps[0], plan.steps[1], plan.steps[2]];
+        assert_eq!(
+            (begin_s, begins_s, plan.end_s),
+            (FIRST_S + 1.0, turn_s, FIRST_S + 17.0)
+        );
+        assert_eq!((level.hold, from.hold), (Hold::Attitude, Hold::FullThrust));
+        assert_eq!(name(&level, &from), None);
         assert_eq!(name(&from, &to).as_deref(), Some("90 deg in yaw, full thrust"));
-        let step = Flown(&record).step([9.0, 13.0], &from, &to, 10.0).unwrap();
+        let step = Flown(&record)
+            .step([turn_s, turn_s + 4.0], &from, &to, 10.0)
+            .unwrap();
         assert!((step[0] - 0.9).abs() < 0.025 && step[2].is_nan(), "{step:?}");
     }
 

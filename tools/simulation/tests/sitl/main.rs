@@ -374,8 +374,8 @@ fn a_manoeuvre_that_the_stack_gives_up_is_an_error() {
         while let Some(truth) = ardupilot.try_step(&throttles) {
             throttles = controller.update(&truth);
             hovered += usize::from(truth.position[2] < -4.5);
-            // In the first step of the manoeuvre, which is 5 s later.
-            if hovered > 4200 {
+            // In the first step of the manoeuvre, which is 20 s later.
+            if hovered > 10_200 {
                 wilful(&mut controller, &mut throttles, server.hover);
             }
         }

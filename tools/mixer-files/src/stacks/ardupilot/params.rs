@@ -4,7 +4,7 @@ use mixer_compiler::airframe::Airmode;
 use mixer_compiler::{ARDUPILOT_MOST_SPIN_MIN as MOST_SPIN_MIN, Compiled};
 
 use super::frames;
-use crate::params::parameter::{Parameters, curve, hundredths, on_curve};
+use crate::params::parameter::{OwnCurve, Parameters, STEADIEST, gains_note};
 use crate::params::writer::Back::{Stays, ToldByImport, Written, WrittenOrNoted};
 use crate::params::writer::{Options, Read, Writer};
 
@@ -36,6 +36,10 @@ const READ: &[Read] = &[
 /// ArduPilot's own `MOT_SPIN_ARM`.
 const SPIN_ARM: f64 = 0.1;
 
+/// ArduPilot's own `MOT_SPIN_MIN` and `MOT_SPIN_MAX`, and its `MOT_THST_EXPO` (`AP_MotorsMulticopter.h`).
+const DEFAULT_SPIN: [f64; 2] = [0.15, 0.95];
+const DEFAULT_EXPO: f64 = 0.65;
+
 /// Range of `MOT_THST_HOVER` in ArduPilot.
 const HOVER_RANGE: [f64; 2] = [0.125, 0.6875];
 
@@ -55,7 +59,7 @@ fn settings(compiled: &Compiled, _: &Options, all: &mut Parameters) {
     let airframe = &compiled.airframe;
     all.because("The mixer inverts the rotors' curve; all else that reads this is linear then.")
         .real("MOT_THST_EXPO", 0.0);
-    spin(compiled, all);
+    spin(idle(compiled, all), airframe.throttle.max, all);
     if airframe.voltage.is_some() {
         all.because("The mixer follows the battery's voltage.")
             .real("MOT_BAT_VOLT_MAX", 0.0)
@@ -89,10 +93,13 @@ fn settings(compiled: &Compiled, _: &Options, all: &mut Parameters) {
 
 /// ArduPilot's parameters where its own mixer puts out the throttles.
 fn own(compiled: &Compiled, _: &Options, all: &mut Parameters) {
-    let expo = hundredths(curve(compiled, true));
-    all.because("Fitted to the thrust of all rotors at one throttle.")
-        .real("MOT_THST_EXPO", expo);
-    spin(compiled, all);
+    let curve = own_curve(compiled);
+    let expo = curve.steadiest(compiled);
+    all.because(STEADIEST).real("MOT_THST_EXPO", expo);
+    let [least, most] = curve.range;
+    all.because("ArduPilot's default, or throttle.min of the airframe where that is less: alone a rotor has no idle of the pair's.")
+        .real("MOT_SPIN_MIN", least);
+    spin(least, most, all);
     if let Some(voltage) = &compiled.airframe.voltage {
         all.because("Range of the battery.")
             .real("MOT_BAT_VOLT_MAX", voltage.range[1])
@@ -101,9 +108,7 @@ fn own(compiled: &Compiled, _: &Options, all: &mut Parameters) {
     } else {
         all.note(NO_VOLTAGE);
     }
-    let [min, max] = compiled.airframe.throttle.range();
-    let throttle = compiled.equal_hover_throttle();
-    let hover = throttle.map(|throttle| on_curve(expo, (throttle - min) / (max - min)));
+    let hover = curve.hover(compiled, expo);
     let why = "MOT_THST_EXPO's curve at the throttle that carries the weight at the reference voltage.";
     hover_throttle(hover, why, all);
 }
@@ -141,7 +146,8 @@ fn pulses(_: &Compiled, [low, high]: [f64; 2], all: &mut Parameters) {
         .whole("MOT_PWM_MAX", high as i32);
 }
 
-fn spin(compiled: &Compiled, all: &mut Parameters) {
+/// Idle of the airframe, as far as ArduPilot arms with it.
+fn idle(compiled: &Compiled, all: &mut Parameters) -> f64 {
     let throttle = &compiled.airframe.throttle;
     let least = throttle.min.min(MOST_SPIN_MIN);
     if least < throttle.min {
@@ -153,10 +159,20 @@ fn spin(compiled: &Compiled, all: &mut Parameters) {
     }
     all.because("Idle of the airframe, throttle.min.")
         .real("MOT_SPIN_MIN", least);
+    least
+}
+
+fn spin(least: f64, most: f64, all: &mut Parameters) {
     all.because("Largest throttle of the airframe, throttle.max.")
-        .real("MOT_SPIN_MAX", throttle.max);
+        .real("MOT_SPIN_MAX", most);
     all.because("At most MOT_SPIN_MIN.")
         .real("MOT_SPIN_ARM", least.min(SPIN_ARM));
+}
+
+/// The curve of ArduPilot's own mixer above its own idle.
+fn own_curve(compiled: &Compiled) -> OwnCurve {
+    let throttle = &compiled.airframe.throttle;
+    OwnCurve::parabola([throttle.min.min(DEFAULT_SPIN[0]), throttle.max])
 }
 
 fn hover_throttle(hover: Option<f64>, why: &str, all: &mut Parameters) {
@@ -171,22 +187,23 @@ fn hover_throttle(hover: Option<f64>, why: &str, all: &mut Parameters) {
 
 /// The note on gains of a vehicle that was tuned with ArduPilot's mixer.
 fn gains(compiled: &Compiled) -> String {
-    let Some(slope) = compiled.slope_in_hover() else {
-        return "ATC_RAT_RLL_*, _PIT_*, _YAW_*: which factor keeps the loop gain is known with `[vehicle] mass_kg` in the \
-                airframe file; one unit of yaw is then the slope in hover"
-            .to_owned();
-    };
-    let voltage = match &compiled.airframe.voltage {
+    let fitted = own_curve(compiled);
+    let slopes = [
+        OwnCurve::parabola(DEFAULT_SPIN).slope_in_hover(compiled, DEFAULT_EXPO),
+        fitted.slope_in_hover(compiled, fitted.steadiest(compiled)),
+    ];
+    let note = gains_note(
+        "ATC_RAT_RLL_*, _PIT_*, _YAW_*",
+        "ArduPilot's defaults of MOT_THST_EXPO, MOT_SPIN_MIN and MOT_SPIN_MAX",
+        slopes,
+    );
+    match &compiled.airframe.voltage {
         Some(voltage) => format!(
-            "; those tuned with MOT_BAT_VOLT_MAX 0 by {:.3} more, the thrust at {:?} V over that at {:?} V",
+            "{note}; those that were tuned with MOT_BAT_VOLT_MAX 0 by {:.3} more, the thrust at {:?} V over that at {:?} V",
             1.0 / voltage.thrust_factor(voltage.range[1]),
             voltage.reference,
             voltage.range[1]
         ),
-        None => String::new(),
-    };
-    format!(
-        "ATC_RAT_RLL_*, _PIT_*, _YAW_*: gains that were tuned with a fitted MOT_THST_EXPO stay; those tuned with \
-         MOT_THST_EXPO 0 are multiplied by {slope:.3}, the slope of thrust over throttle in hover{voltage}"
-    )
+        None => note,
+    }
 }

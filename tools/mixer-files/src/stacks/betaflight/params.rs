@@ -5,13 +5,13 @@ use mixer_compiler::airframe::Airmode;
 use mixer_facts::hover;
 
 use super::frames::TABLES;
-use crate::params::parameter::{Parameters, Value, curve};
+use crate::params::parameter::{OwnCurve, Parameters, STEADIEST, Value, gains_note};
 use crate::params::writer::Back::{Stays, ToldByImport, Written};
-use crate::params::writer::{Options, Read, Writer};
+use crate::params::writer::{Betaflight, Options, Read, Writer};
 
 /// See [`Writer`].
 pub(crate) const WRITER: Writer = Writer {
-    geometry: |compiled, _, all| geometry(compiled, all),
+    geometry,
     settings,
     own,
     pulses,
@@ -43,7 +43,18 @@ const SAME_FACTOR: f64 = 0.05;
 const MOST_IDLE: f64 = 0.2;
 
 /// `mixer`, and where no table of Betaflight has these factors, `mmix`.
-fn geometry(compiled: &Compiled, all: &mut Parameters) -> Result<(), String> {
+fn geometry(compiled: &Compiled, options: &Options, all: &mut Parameters) -> Result<(), String> {
+    let versions = Betaflight::ALL
+        .iter()
+        .map(|(version, word, _)| match *version == options.betaflight {
+            true => format!("{word} (written)"),
+            false => (*word).to_owned(),
+        });
+    let versions: Vec<String> = versions.collect();
+    all.note(format!(
+        "idle, hover and the curve of thrust_linear have other names and forms from version to version: {}, each with what follows it",
+        versions.join(", ")
+    ));
     let own = compiled.betaflight_factors();
     if own.len() > MOST_MOTORS {
         return Err(format!(
@@ -80,15 +91,18 @@ fn custom(own: &[[f64; 3]], all: &mut Parameters) {
 }
 
 /// Where this mixer puts out the throttles.
-fn settings(compiled: &Compiled, _: &Options, all: &mut Parameters) {
+fn settings(compiled: &Compiled, options: &Options, all: &mut Parameters) {
     all.because("The mixer inverts the rotors' curve.")
         .whole("thrust_linear", 0);
     all.because("The mixer follows the battery's voltage.")
         .whole("vbat_sag_compensation", 0);
-    idle(
-        compiled,
-        all,
+    let [min, max] = compiled.airframe.throttle.range();
+    all.because(
         "Idle of crash flip and launch control, in 0.01 %; in flight it is throttle.min of the file.",
+    )
+    .whole(
+        options.betaflight.idle(),
+        (1e4 * min.min(MOST_IDLE)).round() as i32,
     );
     all.because("The largest throttle is the mixer's, throttle.max.")
         .whole("motor_output_limit", 100);
@@ -112,32 +126,62 @@ fn settings(compiled: &Compiled, _: &Options, all: &mut Parameters) {
              `yaw_reserve_nm = {reserve:.2}` in the airframe file is a fifth of hover's"
         ));
     }
-    hover_throttle(compiled, all);
+    hover_throttle(compiled, options, [min, max], all);
+    // A PID sum asks for the torque that the factors give in hover over the airframe's range: see `Compiled::betaflight_scale`.
+    let unit = compiled.slope_in_hover().map(|slope| (max - min) * slope);
+    let fitted = own_curve(compiled, options);
+    let stock = OwnCurve {
+        range: [DEFAULT_IDLE, 1.0],
+        ..fitted
+    };
+    let slopes = [(stock, 0.0), (fitted, fitted.steadiest(compiled))];
+    let slopes = slopes.map(|(curve, factor)| Some(curve.slope_in_hover(compiled, factor)? / unit?));
+    all.note(gains_note(
+        "PID gains",
+        "thrust_linear 0 and Betaflight's idle",
+        slopes,
+    ));
     all.note(
-        "PID gains that were tuned with these factors stay, and those tuned with an `mmix` whose factors of an axis reach over another \
-         range than 2 are multiplied by that range over 2: a PID sum asks for the torque that the factors give in hover at the reference \
-         voltage (`[vehicle] mass_kg` says where that is). Settings of profiles are those of the active one",
+        "PID gains that were tuned with an `mmix` whose factors of an axis reach over another range than 2 are multiplied by that range \
+         over 2, too. Settings of profiles are those of the active one",
     );
 }
 
 /// Where Betaflight's own mixer puts out the throttles.
-fn own(compiled: &Compiled, _: &Options, all: &mut Parameters) {
-    let curve = (100.0 * curve(compiled, true)).round() as i32;
-    all.because("Fitted to the thrust of all rotors at one throttle, in percent as MOT_THST_EXPO.")
-        .whole("thrust_linear", curve);
-    if compiled.airframe.throttle.min > MOST_IDLE {
-        all.note(format!(
-            "throttle.min is {:?}, and Betaflight's motor_idle {MOST_IDLE} at most: its own mixer idles below the airframe's range",
-            compiled.airframe.throttle.min
-        ));
-    }
-    idle(compiled, all, "Idle of the airframe, throttle.min, in 0.01 %.");
-    let [min, max] = compiled.airframe.throttle.range();
+fn own(compiled: &Compiled, options: &Options, all: &mut Parameters) {
+    let curve = own_curve(compiled, options);
+    all.because(STEADIEST).whole(
+        "thrust_linear",
+        (100.0 * curve.steadiest(compiled)).round() as i32,
+    );
+    let [idle, max] = curve.range;
+    all.because("Betaflight's default, or throttle.min of the airframe where that is less, in 0.01 %: alone a rotor has no idle of the pair's.")
+        .whole(options.betaflight.idle(), (1e4 * idle).round() as i32);
     all.because("The largest throttle is throttle.max.").whole(
         "motor_output_limit",
-        (100.0 * (max - min) / (1.0 - min)).round() as i32,
+        (100.0 * (max - idle) / (1.0 - idle)).round() as i32,
     );
-    hover_throttle(compiled, all);
+    hover_throttle(compiled, options, curve.range, all);
+}
+
+/// `DEFAULT_IDLE` of motors that are not brushed (`src/main/pg/motor.c`: 550).
+const DEFAULT_IDLE: f64 = 0.055;
+
+/// The curve of Betaflight's own mixer above its own idle (`pidApplyThrustLinearization`, `pidCompensateThrustLinearization`).
+fn own_curve(compiled: &Compiled, options: &Options) -> OwnCurve {
+    let [min, max] = compiled.airframe.throttle.range();
+    let curve = OwnCurve::parabola([min.min(DEFAULT_IDLE), max]);
+    match options.betaflight {
+        Betaflight::V4_5 | Betaflight::V2025_12 => OwnCurve {
+            output: |e, share| share * (1.0 + e * (1.0 - share) * (1.0 - share)),
+            share: |e, t| t / (1.0 + (e - 0.5 * e * e) * (1.0 - t) * (1.0 - t)),
+            ..curve
+        },
+        Betaflight::V2026_6 => OwnCurve {
+            output: |e, share| share * (1.0 + e * (1.0 - share) * (1.0 + e * (1.0 - 2.0 * share))),
+            ..curve
+        },
+    }
 }
 
 /// Pulse widths of throttle 0 and 1, microseconds; DShot has none.
@@ -147,16 +191,10 @@ fn pulses(_: &Compiled, [low, high]: [f64; 2], all: &mut Parameters) {
         .whole("max_throttle", high as i32);
 }
 
-fn idle(compiled: &Compiled, all: &mut Parameters, why: &str) {
-    let idle = (1e4 * compiled.airframe.throttle.min.min(MOST_IDLE)).round() as i32;
-    all.because(why).whole("motor_idle", idle);
-}
-
-/// Betaflight's hover for altitude hold and rescue; its throttle 1 is throttle.max of all rotors.
-fn hover_throttle(compiled: &Compiled, all: &mut Parameters) {
-    let [min, max] = compiled.airframe.throttle.range();
+/// Betaflight's hover for altitude hold and rescue: its throttle over a range.
+fn hover_throttle(compiled: &Compiled, options: &Options, [least, most]: [f64; 2], all: &mut Parameters) {
     let hover = compiled.equal_hover_throttle();
-    let hover = hover.map(|throttle| (1000.0 + 1000.0 * (throttle - min) / (max - min)).round());
+    let hover = hover.map(|throttle| (1000.0 + 1000.0 * (throttle - least) / (most - least)).round());
     let why = "The throttle of hover at the reference voltage.";
-    all.hover("ap_hover_throttle", hover, why);
+    all.hover(options.betaflight.hover(), hover, why);
 }

@@ -3,7 +3,7 @@
 use mixer_compiler::Compiled;
 use mixer_compiler::airframe::{Correction, Spin, Unit};
 
-use crate::params::parameter::{Parameter, Parameters, Value, curve, hundredths, on_curve};
+use crate::params::parameter::{OwnCurve, Parameter, Parameters, STEADIEST, Value, gains_note};
 use crate::params::writer::Back::{Moot, Stays, Written, WrittenOrNoted};
 use crate::params::writer::{Format, Options, Read, Writer};
 
@@ -91,11 +91,10 @@ const MIDDLE: &str = "Throttle stick in the middle is hover thrust.";
 
 /// PX4's parameters where its own allocator puts out the throttles.
 fn own(compiled: &Compiled, options: &Options, all: &mut Parameters) {
-    let factor = hundredths(curve(compiled, false));
-    all.because("Fitted to the thrust of all rotors at one throttle.")
-        .real("THR_MDL_FAC", factor);
-    let throttle = compiled.equal_hover_throttle();
-    let hover = throttle.map(|throttle| on_curve(factor, throttle));
+    let curve = OwnCurve::parabola(RANGE);
+    let factor = curve.steadiest(compiled);
+    all.because(STEADIEST).real("THR_MDL_FAC", factor);
+    let hover = curve.hover(compiled, factor);
     let why = "THR_MDL_FAC's curve at the throttle that carries the weight at the reference voltage.";
     all.hover("MPC_THR_HOVER", hover, why);
     all.because(MIDDLE).whole("MPC_THR_CURVE", 0);
@@ -212,17 +211,18 @@ fn current_tangent(compiled: &Compiled) -> Option<[f64; 2]> {
     Some([slope, slope * throttle - current(throttle)?])
 }
 
+/// Throttles of an output of 0 and of 1: PX4's allocator idles at 0.
+const RANGE: [f64; 2] = [0.0, 1.0];
+
 /// The note on gains of a vehicle that was tuned with PX4's allocator.
 fn gains(compiled: &Compiled) -> String {
-    match compiled.slope_in_hover() {
-        Some(factor) => format!(
-            "MC_ROLLRATE_K, MC_PITCHRATE_K, MC_YAWRATE_K: gains that were tuned with a fitted THR_MDL_FAC stay; those tuned \
-             with THR_MDL_FAC 0 are multiplied by {factor:.3}, the slope of thrust over throttle in hover"
-        ),
-        None => "MC_ROLLRATE_K, MC_PITCHRATE_K, MC_YAWRATE_K: which factor keeps the loop gain is known with `[vehicle] \
-                 mass_kg` in the airframe file; one unit of yaw is then the slope in hover"
-            .to_owned(),
-    }
+    let curve = OwnCurve::parabola(RANGE);
+    let slopes = [0.0, curve.steadiest(compiled)].map(|factor| curve.slope_in_hover(compiled, factor));
+    gains_note(
+        "MC_ROLLRATE_K, MC_PITCHRATE_K, MC_YAWRATE_K",
+        "THR_MDL_FAC 0",
+        slopes,
+    )
 }
 
 /// QGroundControl's line: vehicle, component, name, value, MAV_PARAM_TYPE.

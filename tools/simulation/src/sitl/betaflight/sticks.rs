@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 
 use crate::sitl::arguments::Arguments;
 use crate::sitl::pilot::{Channels, Phase, Pilot, climbed};
-use crate::sitl::plan::{Manoeuvre, Plan, Target};
+use crate::sitl::plan::{Hold, Manoeuvre, Plan, Target};
 use crate::sitl::world::World;
 use crate::state::wrapped;
 use crate::vehicle::GRAVITY_M_S2;
@@ -92,7 +92,7 @@ impl Sticks {
         let error = wanted - state.position;
         // A height is approached at a limited speed.
         let up_m_s = (-error.z * PLACE / SPEED).clamp(-CLIMB_M_S, CLIMB_M_S) + state.velocity.z;
-        if target.is_climb {
+        if target.hold == Hold::FullThrust {
             self.throttle = 1.0;
         } else if !self.is_constant(time_s) {
             // Thrust goes with about the square of the stick.
@@ -104,7 +104,7 @@ impl Sticks {
         let (sine, cosine) = (libm::sin(state.yaw()), libm::cos(state.yaw()));
         let [forward, right] = [cosine * pull.x + sine * pull.y, cosine * pull.y - sine * pull.x];
         let [forward, right] = [forward, right].map(|tilt| tilt.clamp(-TILT, TILT));
-        let attitude = if target.roll_deg == 0.0 {
+        let attitude = if target.hold == Hold::Place {
             [right, -forward, target.yaw_deg.to_radians()]
         } else {
             [target.roll_deg.to_radians(), 0.0, target.yaw_deg.to_radians()]
