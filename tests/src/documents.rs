@@ -4,6 +4,7 @@
 //! `cargo tables` writes them all; `tests/documents.rs` holds the pages to them.
 
 mod flown;
+mod sizes;
 mod tables;
 
 use std::path::{Path, PathBuf};
@@ -32,6 +33,7 @@ pub fn tables() -> Result<Vec<Table>, String> {
     let mut tables = tables::keys();
     tables.extend([
         of("README.md", "flown", flown::flown()?),
+        of("CONTRIBUTING.md", "sizes", sizes::sizes()?),
         of("docs/evaluation.md", "isolated", tables::isolated()?),
         of("docs/evaluation.md", "accuracy", tables::accuracy()?),
         of("docs/evaluation.md", "static", tables::static_comparison()?),
