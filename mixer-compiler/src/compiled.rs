@@ -11,7 +11,7 @@ use crate::proof::Certificate;
 use crate::proof::residual::Residual;
 use crate::tables::MixerTables;
 
-/// The fields are the project's own: with the feature `unstable` they are public.
+/// The fields, and what of the airframe only the project's packages ask for, are public with the feature `unstable`.
 macro_rules! compiled {
     ($visibility:vis) => {
         /// A compiled airframe: what emission and reports read.
@@ -38,6 +38,91 @@ macro_rules! compiled {
             $visibility dynamics: Option<Vec<Dynamics>>,
             /// What is emitted.
             $visibility tables: MixerTables,
+        }
+
+        impl Compiled {
+            /// Wrench that one unit of PX4's normalised setpoints asks for at the reference voltage: `SCALE`
+            /// of the generated module.
+            $visibility fn scale(&self) -> mixer_rt::Wrench {
+                self.rotors(self.airframe.reference_v()).px4()
+            }
+
+            /// Wrench that one unit of ArduPilot's inputs asks for at the highest voltage of the range, as
+            /// there with `MOT_BAT_VOLT_MAX` set to it: `ARDUPILOT_SCALE` of the generated module.
+            $visibility fn ardupilot_scale(&self) -> mixer_rt::Wrench {
+                self.rotors(self.highest_v()).ardupilot()
+            }
+
+            /// What ArduPilot multiplies roll, pitch and yaw by for each motor, 0.5 at most, by channel: its
+            /// frame of the same geometry has these factors.
+            $visibility fn ardupilot_factors(&self) -> Vec<[f64; 3]> {
+                self.rotors(self.airframe.reference_v()).ardupilot_factors()
+            }
+
+            /// Torques that PID sums of 1000 ask Betaflight for in hover, at the reference voltage, and the thrust of its full
+            /// throttle stick, that of all rotors at the highest voltage: `BETAFLIGHT_SCALE` of the generated module.
+            $visibility fn betaflight_scale(&self) -> mixer_rt::Wrench {
+                mixer_rt::Wrench {
+                    thrust_n: self.ardupilot_scale().thrust_n,
+                    ..self.rotors(self.airframe.reference_v()).betaflight()
+                }
+            }
+
+            /// e of the throttle stick in Betaflight, from 0 to 2: up to 1 the thrust is (1 - e) throttle + e throttle^2 of that of the
+            /// full stick, above it (2 - e) throttle^2 + (e - 1) throttle^3, and the stick in hover that of Betaflight's own mixer at the
+            /// reference voltage. 1 without `[vehicle] mass_kg`.
+            $visibility fn betaflight_expo(&self) -> f64 {
+                let full_n = self.betaflight_scale().thrust_n.into();
+                self.rotors(self.airframe.reference_v()).betaflight_expo(full_n)
+            }
+
+            /// Betaflight's factors of roll, pitch and yaw, in its signs, by channel: `mmix` of the same geometry.
+            $visibility fn betaflight_factors(&self) -> Vec<[f64; 3]> {
+                self.rotors(self.airframe.reference_v()).betaflight_factors()
+            }
+
+            /// PX4's `CA_ROTORn_PX`, `_PY`, `_PZ`, `_AX`, `_AY`, `_AZ`, `_CT` and `_KM`, by channel.
+            $visibility fn px4_rotors(&self) -> Vec<[f64; 8]> {
+                self.rotors(self.airframe.reference_v()).px4_rotors()
+            }
+
+            /// The highest voltage of the range, V; 0 where the airframe has no correction.
+            $visibility fn highest_v(&self) -> f64 {
+                let voltage = self.airframe.voltage.as_ref();
+                voltage.map_or(0.0, |voltage| voltage.range[1])
+            }
+
+            /// Throttle of all rotors alike that carries the weight at the reference voltage; `None` without
+            /// `[vehicle] mass_kg`, or where none does.
+            $visibility fn equal_hover_throttle(&self) -> Option<f64> {
+                self.rotors(self.airframe.reference_v()).hover_throttle()
+            }
+
+            /// Slope in hover at the reference voltage of the share of the largest thrust over the throttle, both rotors alike: what
+            /// a stack's loop gain is multiplied by that takes the one for the other. `None` without a hover.
+            $visibility fn slope_in_hover(&self) -> Option<f64> {
+                self.rotors(self.airframe.reference_v()).slope_in_hover()
+            }
+
+            /// What throttles give by the airframe file alone.
+            $visibility fn physics(&self) -> Physics<'_> {
+                Physics {
+                    airframe: &self.airframe,
+                    maps: &self.maps,
+                }
+            }
+
+            /// How pairs are inverted, and their basis; `None` where no unit is one.
+            $visibility fn inverse(&self) -> Option<(Evaluator, Basis)> {
+                let evaluator = self.of_pairs.first()?.evaluator;
+                Some((evaluator, self.airframe.pairs.first()?.basis))
+            }
+
+            /// What holds of all pairs; `None` where no unit is one.
+            $visibility fn of_all_pairs(&self) -> Option<OfPair> {
+                let (first, others) = self.of_pairs.split_first()?;
+                Some(others.iter().fold(first.clone(), OfPair::and))
+            }
         }
     };
 }
@@ -66,26 +151,6 @@ impl Compiled {
     /// What thrust and torque of a unit may miss at any voltage and density of the ranges, `[N, N m]`: proven.
     pub fn bounds(&self) -> [f64; 2] {
         self.stated
-    }
-
-    /// What throttles give by the airframe file alone.
-    pub fn physics(&self) -> Physics<'_> {
-        Physics {
-            airframe: &self.airframe,
-            maps: &self.maps,
-        }
-    }
-
-    /// How pairs are inverted, and their basis; `None` where no unit is one.
-    pub fn inverse(&self) -> Option<(Evaluator, Basis)> {
-        let evaluator = self.of_pairs.first()?.evaluator;
-        Some((evaluator, self.airframe.pairs.first()?.basis))
-    }
-
-    /// What holds of all pairs; `None` where no unit is one.
-    pub fn of_all_pairs(&self) -> Option<OfPair> {
-        let (first, others) = self.of_pairs.split_first()?;
-        Some(others.iter().fold(first.clone(), OfPair::and))
     }
 }
 

@@ -216,70 +216,7 @@ fn gather<A, B, C>(
 const GENERATED: &str = "// @generated from an airframe file by mixer-compiler; do not edit.\n";
 
 impl Compiled {
-    /// Wrench that one unit of PX4's normalised setpoints asks for at the reference voltage: `SCALE`
-    /// of the generated module.
-    pub fn scale(&self) -> mixer_rt::Wrench {
-        self.rotors(self.airframe.reference_v()).px4()
-    }
-
-    /// Wrench that one unit of ArduPilot's inputs asks for at the highest voltage of the range, as
-    /// there with `MOT_BAT_VOLT_MAX` set to it: `ARDUPILOT_SCALE` of the generated module.
-    pub fn ardupilot_scale(&self) -> mixer_rt::Wrench {
-        self.rotors(self.highest_v()).ardupilot()
-    }
-
-    /// What ArduPilot multiplies roll, pitch and yaw by for each motor, 0.5 at most, by channel: its
-    /// frame of the same geometry has these factors.
-    pub fn ardupilot_factors(&self) -> Vec<[f64; 3]> {
-        self.rotors(self.airframe.reference_v()).ardupilot_factors()
-    }
-
-    /// Torques that PID sums of 1000 ask Betaflight for in hover, at the reference voltage, and the thrust of its full
-    /// throttle stick, that of all rotors at the highest voltage: `BETAFLIGHT_SCALE` of the generated module.
-    pub fn betaflight_scale(&self) -> mixer_rt::Wrench {
-        mixer_rt::Wrench {
-            thrust_n: self.ardupilot_scale().thrust_n,
-            ..self.rotors(self.airframe.reference_v()).betaflight()
-        }
-    }
-
-    /// e of the throttle stick in Betaflight, from 0 to 2: up to 1 the thrust is (1 - e) throttle + e throttle^2 of that of the
-    /// full stick, above it (2 - e) throttle^2 + (e - 1) throttle^3, and the stick in hover that of Betaflight's own mixer at the
-    /// reference voltage. 1 without `[vehicle] mass_kg`.
-    pub fn betaflight_expo(&self) -> f64 {
-        let full_n = self.betaflight_scale().thrust_n.into();
-        self.rotors(self.airframe.reference_v()).betaflight_expo(full_n)
-    }
-
-    /// Betaflight's factors of roll, pitch and yaw, in its signs, by channel: `mmix` of the same geometry.
-    pub fn betaflight_factors(&self) -> Vec<[f64; 3]> {
-        self.rotors(self.airframe.reference_v()).betaflight_factors()
-    }
-
-    /// PX4's `CA_ROTORn_PX`, `_PY`, `_PZ`, `_AX`, `_AY`, `_AZ`, `_CT` and `_KM`, by channel.
-    pub fn px4_rotors(&self) -> Vec<[f64; 8]> {
-        self.rotors(self.airframe.reference_v()).px4_rotors()
-    }
-
-    /// The highest voltage of the range, V; 0 where the airframe has no correction.
-    pub fn highest_v(&self) -> f64 {
-        let voltage = self.airframe.voltage.as_ref();
-        voltage.map_or(0.0, |voltage| voltage.range[1])
-    }
-
-    /// Throttle of all rotors alike that carries the weight at the reference voltage; `None` without
-    /// `[vehicle] mass_kg`, or where none does.
-    pub fn equal_hover_throttle(&self) -> Option<f64> {
-        self.rotors(self.airframe.reference_v()).hover_throttle()
-    }
-
-    /// Slope in hover at the reference voltage of the share of the largest thrust over the throttle, both rotors alike: what
-    /// a stack's loop gain is multiplied by that takes the one for the other. `None` without a hover.
-    pub fn slope_in_hover(&self) -> Option<f64> {
-        self.rotors(self.airframe.reference_v()).slope_in_hover()
-    }
-
-    fn rotors(&self, voltage_v: f64) -> scale::Rotors<'_> {
+    pub(crate) fn rotors(&self, voltage_v: f64) -> scale::Rotors<'_> {
         scale::Rotors {
             airframe: &self.airframe,
             effectiveness: &self.effectiveness,

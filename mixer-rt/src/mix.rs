@@ -365,8 +365,20 @@ pub trait Airframe: Sealed {
     const UNITS: usize;
     /// Number of output channels, one per rotor.
     const CHANNELS: usize;
+    /// Least throttle of a rotor that is not out, the idle, and the largest.
+    const THROTTLE: [f32; 2];
+    /// Least and highest voltage of the file's range, V; 0 where the voltage is ignored.
+    const VOLTAGES: [f32; 2];
+    /// Voltage of the bench, V: what to pass before one is measured. 0 where it is ignored.
+    const REFERENCE_V: f32;
+    /// Density of the bench's air, kg/m^3, likewise.
+    const REFERENCE_DENSITY_KG_M3: f32;
     /// The wrench that one unit of a normalised setpoint asks for: see [`Wrench::from_normalised`].
     const SCALE: Wrench;
+    /// The same for ArduPilot's inputs.
+    const ARDUPILOT_SCALE: Wrench;
+    /// Torques of PID sums of 1000 in Betaflight, and the thrust of its full throttle stick.
+    const BETAFLIGHT_SCALE: Wrench;
     /// [`Mix`] for the airframe's number of channels.
     type Mix: Outputs;
 

@@ -67,7 +67,13 @@ pub mod coaxial_bicopter {
         const NAME: &'static str = "coaxial-bicopter";
         const UNITS: usize = UNITS;
         const CHANNELS: usize = CHANNELS;
+        const THROTTLE: [f32; 2] = [THROTTLE_MIN, THROTTLE_MAX];
+        const VOLTAGES: [f32; 2] = [MIN_V, MAX_V];
+        const REFERENCE_V: f32 = REFERENCE_V;
+        const REFERENCE_DENSITY_KG_M3: f32 = REFERENCE_DENSITY_KG_M3;
         const SCALE: rt::Wrench = SCALE;
+        const ARDUPILOT_SCALE: rt::Wrench = ARDUPILOT_SCALE;
+        const BETAFLIGHT_SCALE: rt::Wrench = BETAFLIGHT_SCALE;
         type Mix = rt::Mix<CHANNELS>;
         #[inline]
         fn mix(

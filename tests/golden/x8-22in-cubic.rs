@@ -69,7 +69,13 @@ pub mod x8_22in_cubic {
         const NAME: &'static str = "x8-22in-cubic";
         const UNITS: usize = UNITS;
         const CHANNELS: usize = CHANNELS;
+        const THROTTLE: [f32; 2] = [THROTTLE_MIN, THROTTLE_MAX];
+        const VOLTAGES: [f32; 2] = [MIN_V, MAX_V];
+        const REFERENCE_V: f32 = REFERENCE_V;
+        const REFERENCE_DENSITY_KG_M3: f32 = REFERENCE_DENSITY_KG_M3;
         const SCALE: rt::Wrench = SCALE;
+        const ARDUPILOT_SCALE: rt::Wrench = ARDUPILOT_SCALE;
+        const BETAFLIGHT_SCALE: rt::Wrench = BETAFLIGHT_SCALE;
         type Mix = rt::Mix<CHANNELS>;
         #[inline]
         fn mix(

@@ -6,6 +6,7 @@ use super::wording::printable;
 
 /// The text of an airframe file together with the path that its user knows it by.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Source {
     /// Path as shown to the user, with whatever base the caller finds helpful.
     pub name: String,

@@ -24,7 +24,7 @@ const LONGEST_PIECE: usize = 80;
 
 impl Parameters {
     pub(crate) fn read(source: &Source) -> Result<Self, String> {
-        let Source { name: file, text } = source;
+        let Source { name: file, text, .. } = source;
         let lines = text.trim_start_matches('\u{feff}').lines().zip(1..);
         let statements = lines.flat_map(|(line, number)| {
             let content = line.split('#').next().unwrap_or_default();
