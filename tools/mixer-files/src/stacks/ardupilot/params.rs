@@ -198,12 +198,12 @@ fn gains(compiled: &Compiled) -> String {
         slopes,
     );
     match &compiled.airframe.voltage {
-        Some(voltage) => format!(
+        Some(voltage) if slopes[0].is_some() => format!(
             "{note}; those that were tuned with MOT_BAT_VOLT_MAX 0 by {:.3} more, the thrust at {:?} V over that at {:?} V",
             1.0 / voltage.thrust_factor(voltage.range[1]),
             voltage.reference,
             voltage.range[1]
         ),
-        None => note,
+        _ => note,
     }
 }
