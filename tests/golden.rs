@@ -15,12 +15,17 @@ use mixer_tests::{airframes, golden, root, toml_names};
 #[path = "firmware/src/bin/vectors/harness.rs"]
 mod harness;
 
-const MEND: &str = "if the change is meant, `cargo mixer golden airframes/*.toml -o tests/golden`, remove the files that it calls \
-     orphans, and look at the difference";
+const MEND: &str = "if the change is meant, `cargo mixer golden airframes/*.toml -o tests/golden --force`, `git clean -fX tests/golden`, \
+     remove the files that are called orphans, and look at the difference";
+
+/// Of generated Rust one text of each kind is held: a closed form, another with air and least power, five units and more, single
+/// rotors. Of all airframes the bits are. `tests/golden/.gitignore` has the same names.
+const TEXTS: [&str; 4] = ["isae-x8.rs", "x8-11in-least-power.rs", "px4-x12.rs", "hexa-stacked.rs"];
 
 #[test]
 fn airframes_compile_to_their_golden_outputs() {
-    let outputs = golden::outputs().unwrap_or_else(|e| panic!("{e}"));
+    let mut outputs = golden::outputs().unwrap_or_else(|e| panic!("{e}"));
+    outputs.retain(|file, _| !file.ends_with(".rs") || TEXTS.contains(&file.as_str()));
     let differences = compare::differences(&golden::folder(), &outputs).unwrap_or_else(|e| panic!("{e}"));
     assert!(differences.is_empty(), "{}\n{MEND}", differences.join("\n"));
 }

@@ -1,4 +1,4 @@
-//! Golden outputs of `airframes/`, held in `tests/golden/` as a user's are.
+//! Golden outputs of `airframes/`, held in `tests/golden/` as a user's are, but for most of the generated Rust.
 //!
 //! `cargo mixer golden airframes/*.toml -o tests/golden` writes them and nothing else does.
 
