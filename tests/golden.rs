@@ -20,7 +20,12 @@ const MEND: &str = "if the change is meant, `cargo mixer golden airframes/*.toml
 
 /// Of generated Rust one text of each kind is held: a closed form, another with air and least power, five units and more, single
 /// rotors. Of all airframes the bits are. `tests/golden/.gitignore` has the same names.
-const TEXTS: [&str; 4] = ["isae-x8.rs", "x8-11in-least-power.rs", "px4-x12.rs", "hexa-stacked.rs"];
+const TEXTS: [&str; 4] = [
+    "isae-x8.rs",
+    "x8-11in-least-power.rs",
+    "px4-x12.rs",
+    "hexa-stacked.rs",
+];
 
 #[test]
 fn airframes_compile_to_their_golden_outputs() {

@@ -43,6 +43,7 @@ pub fn tables() -> Result<Vec<Table>, String> {
         of("docs/air.md", "altitudes", tables::altitudes()),
         of("docs/air.md", "density", tables::density()),
         of("docs/air.md", "level-thrust", tables::level_thrust()?),
+        of("docs/flights.md", "drawn", flown::drawn()?),
         of("docs/flights.md", "hover", tables::hover()?),
         of("docs/flights.md", "tracking", tables::tracking()?),
     ]);

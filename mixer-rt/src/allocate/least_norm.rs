@@ -59,7 +59,9 @@ impl<K: Kinds, S: AllocationMethod, const VERTICAL: bool> Frame<'_, '_, K, S, VE
     /// Notes what a unit gives; true where it is what was asked, within the inverse map's tolerance.
     #[inline(always)]
     pub(super) fn gives(&self, given: [f32; 2], state: &mut UnitState) -> bool {
-        self.tables.tolerance.allows(given, replace(&mut state.efforts, given))
+        self.tables
+            .tolerance
+            .allows(given, replace(&mut state.efforts, given))
     }
 
     /// The guard, where the interior point method has not met the rows: the largest share of roll and pitch, then of

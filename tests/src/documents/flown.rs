@@ -1,104 +1,118 @@
-//! The flights of the first page, out of the tables of flights.
+//! The flights of the drawn vehicles: the table of the first page, and that of all mixers.
 
 use super::measured;
 use super::tables::markdown;
 use crate::root;
 
-/// A row: what was flown, its file, cells that tell the file's row, and the column.
-type Figure = (&'static str, &'static str, &'static [&'static str], &'static str);
+/// A row: what was flown, the step in the file, and its column.
+type Figure = (&'static str, &'static str, &'static str);
 
-/// The rotors' T by the estimate is 0.39 s.
-const FIGURES: [Figure; 5] = [
+const HEIGHT: &str = "height error, most (m)";
+const TIME: &str = "time to 90 % (s)";
+const OVERSHOOT: &str = "overshoot (%)";
+const TILT: &str = "roll or pitch, most (deg)";
+const OUT: &str = "upper rotor out, 90 deg in yaw";
+
+const FIGURES: [Figure; 11] = [
     (
         "yaw by 90 degrees: height error, most (m)",
-        "px4-inertia.csv",
-        &["0.39"],
-        "height error, most, 90 degrees (m)",
+        "90 deg in yaw",
+        HEIGHT,
     ),
     (
         "yaw by 175 degrees: height error, most (m)",
-        "px4-inertia.csv",
-        &["0.39"],
-        "height error, most, 175 degrees (m)",
+        "175 deg in yaw",
+        HEIGHT,
     ),
+    ("yaw by 90 degrees: time to 90 % (s)", "90 deg in yaw", TIME),
+    ("yaw by 175 degrees: time to 90 % (s)", "175 deg in yaw", TIME),
+    ("yaw by 90 degrees: overshoot (%)", "90 deg in yaw", OVERSHOOT),
+    ("yaw by 175 degrees: overshoot (%)", "175 deg in yaw", OVERSHOOT),
+    ("up by 3 m: time to 90 % (s)", "3 m in height", TIME),
+    ("sideways by 4 m: height error, most (m)", "4 m sideways", HEIGHT),
     (
-        "up by 3 m: time to 90 % (s)",
-        "px4-manoeuvres.csv",
-        &["3 m in height"],
-        "time to 90 % (s)",
-    ),
-    (
-        "sideways by 4 m: height error, most (m)",
-        "px4-manoeuvres.csv",
-        &["4 m sideways"],
-        "height error, most (m)",
-    ),
-    (
-        "roll to 15 degrees: time to 90 % (s)",
-        "px4-manoeuvres.csv",
-        &["15 deg in roll"],
-        "time to 90 % (s)",
-    ),
-];
-
-/// With a rotor out, in a file whose cells are of PX4's allocator, fitted, and of this mixer.
-const ROTOR_OUT: [Figure; 2] = [
-    (
-        "an upper rotor out, yaw by 90 degrees: roll or pitch, most (degrees)",
-        "px4-rotor-out.csv",
-        &["upper (output 0)"],
-        "in the yaw steps: roll or pitch, most (deg)",
+        "sideways by 6 m with yaw by 90 degrees: height error, most (m)",
+        "6 m sideways, 90 deg in yaw",
+        HEIGHT,
     ),
     (
         "an upper rotor out, yaw by 90 degrees: height error, most (m)",
-        "px4-rotor-out.csv",
-        &["upper (output 0)"],
-        "height error, most (m)",
+        OUT,
+        HEIGHT,
+    ),
+    (
+        "an upper rotor out, yaw by 90 degrees: roll or pitch, most (degrees)",
+        OUT,
+        TILT,
     ),
 ];
 
-/// The cell of a figure's column in the row that holds its words and these; `None` where there is no such row.
-fn cell((_, file, words, column): Figure, more: &[&str]) -> Result<Option<String>, String> {
-    let path = root().join("tests/measurements/flights").join(file);
-    let (header, rows) = measured(&path)?;
-    let at = header.iter().position(|name| name == column);
-    let at = at.ok_or_else(|| format!("{}: no column {column}", path.display()))?;
-    let words = words.iter().chain(more);
-    let row = rows
-        .iter()
-        .find(|row| words.clone().all(|word| row.iter().any(|cell| cell == *word)));
-    Ok(row.and_then(|row| row.get(at)).map(str::to_owned))
+/// Rows of the first page.
+const FIRST_PAGE: [usize; 6] = [0, 1, 2, 7, 9, 10];
+
+/// What PX4's allocator, as it comes and fitted, and this mixer at the loop gain of the fitted one hold.
+pub(super) fn flown() -> Result<String, String> {
+    table(
+        &FIRST_PAGE.map(|row| FIGURES[row]),
+        &[
+            ("as it comes", "PX4, as it comes"),
+            ("fitted", "PX4, fitted to the pair"),
+            ("mix_dynamic, loop gain", "PX4 with this mixer"),
+        ],
+    )
 }
 
-/// What PX4's allocator, as it comes and fitted, and this mixer hold in flight.
-pub(super) fn flown() -> Result<String, String> {
-    const MIXERS: [&str; 3] = ["as it comes", "fitted", "this mixer"];
-    const NOT_FLOWN: &str = "-";
-    let mut rows = Vec::new();
-    for figure in FIGURES {
-        let mut row = vec![figure.0.to_owned()];
-        for mixer in MIXERS {
-            row.push(cell(figure, &[mixer])?.unwrap_or_else(|| NOT_FLOWN.to_owned()));
-        }
-        rows.push(row);
-    }
-    for figure in ROTOR_OUT {
-        let both = cell(figure, &[])?.unwrap_or_default();
-        let (fitted, this) = both
-            .split_once("; ")
-            .ok_or_else(|| format!("{}: `{both}` has not the cells of two mixers", figure.1))?;
-        rows.push([figure.0, NOT_FLOWN, fitted, this].map(str::to_owned).to_vec());
-    }
-    if rows.iter().any(|row| row[2..].contains(&NOT_FLOWN.to_owned())) {
-        return Err(format!("a figure of the first page was not flown: {rows:?}"));
-    }
-    Ok(markdown(
+/// All mixers.
+pub(super) fn drawn() -> Result<String, String> {
+    table(
+        &FIGURES,
         &[
-            "flown",
-            "PX4, as it comes",
-            "PX4, fitted to the pair",
-            "PX4 with this mixer",
+            ("as it comes", "as it comes"),
+            ("fitted on the axis", "fitted on the axis"),
+            ("fitted", "fitted"),
+            ("mix", "`mix`"),
+            ("mix_dynamic", "`mix_dynamic`"),
+            ("mix_dynamic, loop gain", "the same at the fitted loop gain"),
         ],
-        &rows,
-    ))
+    )
+}
+
+/// The mean over the vehicles and the worst one, of each mixer by its name in the file and in the table.
+fn table(figures: &[Figure], mixers: &[(&str, &str)]) -> Result<String, String> {
+    let path = root().join("tests/measurements/flights/px4-drawn.csv");
+    let fault = |what: &str| format!("{}: {what}", path.display());
+    let (header, rows) = measured(&path)?;
+    let column = |name: &str| {
+        let at = header.iter().position(|column| column == name);
+        at.ok_or_else(|| fault(&format!("no column {name}")))
+    };
+    let [mixer_at, step_at] = [column("mixer")?, column("step")?];
+    let mut lines = Vec::new();
+    for (words, step, name) in figures {
+        let at = column(name)?;
+        let mut line = vec![(*words).to_owned()];
+        for (mixer, _) in mixers {
+            let of = rows
+                .iter()
+                .filter(|row| row.get(mixer_at) == Some(mixer) && row.get(step_at) == Some(step));
+            let values: Option<Vec<f64>> = of.map(|row| row.get(at)?.parse().ok()).collect();
+            let values = values.filter(|values| !values.is_empty());
+            let values = values.ok_or_else(|| fault(&format!("{mixer}: {step} has no {name}")))?;
+            let mean = values.iter().sum::<f64>() / values.len() as f64;
+            let worst = values.iter().copied().fold(0.0, f64::max);
+            let decimals = match *name {
+                HEIGHT => 3,
+                OVERSHOOT => 1,
+                _ => 2,
+            };
+            line.push(format!("{mean:.decimals$}; {worst:.decimals$}"));
+        }
+        lines.push(line);
+    }
+    let names = mixers.iter().map(|(_, name)| *name);
+    let header: Vec<&str> = ["mean of six vehicles; worst one"]
+        .into_iter()
+        .chain(names)
+        .collect();
+    Ok(markdown(&header, &lines))
 }
