@@ -2,7 +2,7 @@
 
 use mixer_rt::{Conditions, Wrench};
 
-use crate::airframe::Airframe;
+use crate::airframe::{Airframe, Spin};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::tables::MixerTables;
 
@@ -19,25 +19,50 @@ const STEPS: usize = 128;
 /// A layout that cannot hover: at no thrust the served torques vanish.
 pub(crate) fn thrust_range(airframe: &Airframe, tables: &MixerTables) -> Result<[f32; 2], Vec<Diagnostic>> {
     let volts = airframe.reference_v() as f32;
-    let is_delivered = |thrust_n: f32| {
-        let setpoint = Wrench {
-            thrust_n,
-            ..Wrench::default()
+    let is_delivered = |thrust_n: f32| is_level(airframe, tables, thrust_n, Conditions::at_voltage(volts));
+    longest_run(tables, &is_delivered).ok_or_else(|| vec![no_hover(airframe)])
+}
+
+/// Whether a thrust is delivered without torques.
+fn is_level(airframe: &Airframe, tables: &MixerTables, thrust_n: f32, conditions: Conditions) -> bool {
+    let mixed = tables.mix(&Wrench::from_array([0.0, 0.0, 0.0, thrust_n]), conditions);
+    let mut axes = airframe.allocation.axes.iter();
+    mixed.is_ok_and(|(_, _, saturation)| axes.all(|axis| !saturation.is_flagged(*axis)))
+}
+
+/// The fault of a frame that cannot hover: nothing balances the torque of single rotors of which more turn one way.
+fn no_hover(airframe: &Airframe) -> Diagnostic {
+    let message = "no thrust is attainable without roll, pitch or yaw";
+    for spin in Spin::ALL {
+        let of = |spin| {
+            let units = airframe.units.iter().enumerate();
+            units.filter(move |(_, unit)| unit.lower_channel.is_none() && unit.upper_spin == spin)
         };
-        tables.mix(&setpoint, volts).is_ok_and(|(_, _, saturation)| {
-            let mut axes = airframe.allocation.axes.iter();
-            axes.all(|axis| !saturation.is_flagged(*axis))
-        })
-    };
-    longest_run(tables, &is_delivered).ok_or_else(|| {
-        vec![airframe.diagnostic(
-            Code::Hover,
-            "unit",
-            "no thrust is attainable without roll, pitch or yaw".to_owned(),
-            "",
-            "check positions, spins and thrust axes: the units must balance each other, each with a torque near zero",
-        )]
-    })
+        if let Some((last, _)) = of(spin).skip(of(spin.reversed()).count() + 1).last() {
+            let outputs: Vec<String> = of(spin).map(|(_, unit)| unit.upper_channel.to_string()).collect();
+            return airframe.diagnostic(
+                Code::Hover,
+                &format!("unit[{last}].upper_spin"),
+                format!(
+                    "{message}: the single rotors on outputs {} turn {}",
+                    outputs.join(", "),
+                    spin.in_words()
+                ),
+                "",
+                format!(
+                    "write `upper_spin = \"{}\"` in one of their units",
+                    spin.reversed().name()
+                ),
+            );
+        }
+    }
+    airframe.diagnostic(
+        Code::Hover,
+        "unit",
+        message,
+        "",
+        "check positions, spins and thrust axes: the units must balance each other, each with a torque near zero",
+    )
 }
 
 /// Level flight at both ends of the ranges of voltage and density: where thrust and torque follow these by other powers,
@@ -59,16 +84,7 @@ pub(crate) fn check_ends(
         });
         let conditions = Conditions::at_voltage(volts as f32).in_air(density as f32);
         let factor = airframe.factors(volts, density)[0] as f32;
-        let is_delivered = |thrust_n: f32| {
-            let setpoint = Wrench {
-                thrust_n: factor * thrust_n,
-                ..Wrench::default()
-            };
-            tables.mix(&setpoint, conditions).is_ok_and(|(_, _, saturation)| {
-                let mut axes = airframe.allocation.axes.iter();
-                axes.all(|axis| !saturation.is_flagged(*axis))
-            })
-        };
+        let is_delivered = |thrust_n: f32| is_level(airframe, tables, factor * thrust_n, conditions);
         if is_delivered(middle_n) || longest_run(tables, &is_delivered).is_some() {
             continue;
         }
