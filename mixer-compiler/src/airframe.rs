@@ -7,6 +7,7 @@ mod inverse;
 mod kind;
 mod layout;
 mod limits;
+mod measured;
 mod name;
 mod pair;
 mod power;
@@ -27,17 +28,18 @@ pub(crate) use self::basis::{POWERS, value_of_terms};
 pub use self::correction::{Correction, Law, TYPICAL_EXPONENT};
 pub use self::inverse::{Inverse, Method};
 pub use self::kind::Kind;
+pub use self::measured::Measured;
 pub use self::name::of_file as name_of_file;
 pub use self::pair::{Pair, Spin};
 pub use self::power::Power;
 pub use self::rotor_alone::RotorAlone;
 pub use self::single_rotor::SingleRotor;
 pub use self::throttle::Throttle;
-pub use self::uncertainty::Uncertainty;
+pub use self::uncertainty::{EXPONENT_DEVIATION, Uncertainty, by_voltage};
 pub use self::unit::{Rotor, Unit};
 pub use self::vehicle::{GRAVITY, Vehicle};
 use crate::diagnostic::source::Source;
-use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::diagnostic::{Code, Diagnostic, Diagnostics, number};
 use crate::spec::keys::{Shape, ValueKind, keys};
 use crate::spec::{self, Fields, Places, Spanned};
 
@@ -67,6 +69,9 @@ keys! { FILE = "":
     VEHICLE "vehicle" = "", ValueKind::Table(&vehicle::TABLE),
         "The vehicle, for what `check` and the report say of hover.";
 }
+
+/// How far voltages of benches are apart, or a reference from them, as a share, where it matters.
+pub(crate) const APART: f64 = 0.01;
 
 /// The keys of the airframe file, version 1.
 pub const KEYS: &Shape = &FILE;
@@ -117,9 +122,89 @@ impl Airframe {
         let table = spec::parse(source, &mut faults);
         let airframe = table.and_then(|table| read(&table, &mut faults));
         match airframe {
-            Some(airframe) if faults.is_empty() => Ok(airframe),
+            Some(mut airframe) if faults.is_empty() => match airframe.bring() {
+                faults if faults.is_empty() => Ok(airframe),
+                faults => Err(Diagnostics::new(source.clone(), faults)),
+            },
             _ => Err(Diagnostics::new(source.clone(), faults)),
         }
+    }
+
+    /// Brings every kind from its own bench's references to the frame's by its own laws, and widens its uncertainty by what
+    /// their exponents may be off: all kinds are taken at one voltage and in one air, or refused.
+    fn bring(&mut self) -> Vec<Diagnostic> {
+        let (mut faults, mut all) = (Vec::new(), Vec::new());
+        for view in self.views() {
+            let (mut by, mut variance) = ([1.0; 3], 0.0);
+            let frame = [("voltage", "V", &self.voltage), ("air", "kg/m3", &self.air)];
+            for (own, (table, unit, frame)) in view.of.measured().own_laws.iter().zip(frame) {
+                let (Some(own), to) = (own, frame.as_ref().map(|frame| frame.reference)) else {
+                    continue;
+                };
+                let [low, high] = own.range;
+                if let Some(to) = to.filter(|to| (low..=high).contains(to)) {
+                    let [f, q] = own.factors(to);
+                    // Torque times speed; the speed is as the root of thrust over density.
+                    let density = if unit == "V" { 1.0 } else { to / own.reference };
+                    for (by, factor) in by.iter_mut().zip([f, q, f * (f / density).sqrt()]) {
+                        *by *= factor;
+                    }
+                    let off = by_voltage(EXPONENT_DEVIATION, own.reference, to);
+                    variance += off * off;
+                    continue;
+                }
+                let [low, high, at] = [low, high, own.reference].map(number);
+                let reference = to.map_or("no reference".to_owned(), |to| {
+                    format!("a reference of {}", number(to))
+                });
+                faults.push(view.diagnostic(
+                    Code::References,
+                    &format!("pair.{table}"),
+                    format!(
+                        "measured at {at} {unit}, with a law from {low} to {high}; the frame's `[{table}]` has {reference}"
+                    ),
+                    "cannot be brought there",
+                    format!(
+                        "give the frame a `[{table}]` with its reference in that range, or widen it: `--cells N` of identify \
+                         writes the pack's"
+                    ),
+                ));
+            }
+            all.push((by, variance));
+        }
+        // Without a law rows stay at the voltages of their benches.
+        let rows = || {
+            self.views()
+                .filter_map(|view| Some((view.of.measured().bench_v?, view)))
+        };
+        let low = rows().map(|([_, high], _)| high).fold(f64::INFINITY, f64::min);
+        let apart = rows().find(|([high, _], _)| *high > (1.0 + APART) * low);
+        if let (None, Some(([high, _], view))) = (&self.voltage, apart) {
+            let [low, high] = [low, high].map(number);
+            faults.push(view.diagnostic(
+                Code::References,
+                "pair.bench_v",
+                format!("measured above {high} V, another kind below {low} V, and there is no `[voltage]`"),
+                "cannot be brought together",
+                "identify each again with --voltage-exponent 1.75 --cells N; where each flies at its bench's voltage, remove bench_v",
+            ));
+        }
+        let pairs = self.pairs.iter_mut().map(|pair| {
+            let alone = pair.lower_out.iter_mut().chain(&mut pair.upper_out);
+            let mut terms = vec![(0, &mut pair.thrust_n[..]), (1, &mut pair.torque_nm)];
+            terms.extend(alone.flat_map(RotorAlone::terms));
+            terms.extend(pair.power.as_mut().map(|power| (2, &mut power.power_w[..])));
+            (terms, &mut pair.measured)
+        });
+        let rotors = self.single_rotors.iter_mut();
+        let rotors = rotors.map(|rotor| (rotor.alone.terms().into(), &mut rotor.measured));
+        for ((terms, measured), (by, variance)) in pairs.chain(rotors).zip(all) {
+            for (k, terms) in terms {
+                terms.iter_mut().for_each(|term| *term *= by[k]);
+            }
+            measured.uncertainty = measured.uncertainty.map(|own| own.with([variance.sqrt(); 2]));
+        }
+        faults
     }
 
     /// Takes tolerances that the file does not state down to a thousandth of the least of the units' `scales`, their largest
@@ -191,12 +276,21 @@ impl Airframe {
         }
     }
 
-    /// The words `, pair "front"` or `, rotor "tail"`; none where all units are alike.
+    /// The words `, pair "front"` or `, rotor "tail"`, with what was brought to the frame's references; none where all units
+    /// are alike.
     pub fn named_kind(&self, unit: &Unit) -> String {
-        match self.kind_of(unit).name() {
+        let kind = self.kind_of(unit);
+        let laws = kind.measured().own_laws.iter().zip(["V", "kg/m3"]);
+        let own = laws.filter_map(|(own, unit)| {
+            Some(format!(
+                ", measured at {} {unit}",
+                number(own.as_ref()?.reference)
+            ))
+        });
+        match kind.name() {
             (_, "") => String::new(),
             _ if !self.is_unlike() => String::new(),
-            (word, name) => format!(", {word} \"{name}\""),
+            (word, name) => format!(", {word} \"{name}\"{}", own.collect::<String>()),
         }
     }
 
@@ -336,9 +430,7 @@ fn read(table: &DeTable<'_>, faults: &mut Vec<Diagnostic>) -> Option<Airframe> {
     let single_rotors: Option<Vec<SingleRotor>> = single_rotors.into_iter().collect();
     let rotor_names = single_rotors.iter().flatten().map(|rotor| rotor.name.clone());
     let rotor_names: Vec<String> = rotor_names.collect();
-    let voltage = file.table(&VOLTAGE, correction::read_voltage);
-    let of_voltage = voltage.as_ref().map(Option::as_ref);
-    let air = file.table(&AIR, |table| correction::read_air(table, of_voltage));
+    let [voltage, air] = correction::read(&mut file, [&VOLTAGE, &AIR]);
     let layout = file.table(&LAYOUT, |table| layout::read(table, bench_spin));
     let units = file.tables(&UNIT, unit::read);
     let inverse = file.table(&INVERSE, inverse::read);
@@ -412,8 +504,8 @@ fn read(table: &DeTable<'_>, faults: &mut Vec<Diagnostic>) -> Option<Airframe> {
         throttle: throttle?,
         pairs,
         single_rotors: single_rotors?,
-        voltage: voltage.flatten(),
-        air: air.flatten(),
+        voltage,
+        air,
         inverse: inverse.flatten().unwrap_or_default(),
         allocation: allocation.flatten().unwrap_or_default(),
         vehicle: vehicle.flatten(),

@@ -234,10 +234,11 @@ fn limits(compiled: &Compiled) -> Option<Diagnostic> {
 /// Hover leaves less of an axis than the pair may be off by, at the lowest voltage.
 fn margins(compiled: &Compiled) -> Vec<Diagnostic> {
     let airframe = &compiled.airframe;
-    let Some(weight_n) = airframe
-        .weight_n()
-        .filter(|_| airframe.views().all(|view| view.of.uncertainty().is_some()))
-    else {
+    let Some(weight_n) = airframe.weight_n().filter(|_| {
+        airframe
+            .views()
+            .all(|view| view.of.measured().uncertainty.is_some())
+    }) else {
         return Vec::new();
     };
     let lowest_v = airframe.voltage.as_ref().map(|voltage| voltage.range[0]);
@@ -347,7 +348,7 @@ pub fn band(compiled: &Compiled, axis: Axis, voltage_v: Option<f64>) -> Option<f
     let [k_f, k_q] = voltage_v.map_or([1.0; 2], |volts| airframe.voltage_factors(volts));
     let units = airframe.units.iter().zip(scales(airframe, [1.0; 2]));
     let off = units.map(|(unit, [f, q])| {
-        let uncertainty = airframe.kind_of(unit).uncertainty()?;
+        let uncertainty = airframe.kind_of(unit).measured().uncertainty?;
         Some([
             0.01 * uncertainty.thrust_percent * k_f * f,
             0.01 * uncertainty.torque_percent * k_q * q,

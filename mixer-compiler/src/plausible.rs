@@ -37,7 +37,7 @@ enum Rules {
 use Rules::{EachKind, EachPair, Frame};
 
 /// All rules, those that may be the reason of others before these.
-const RULES: [Rules; 23] = [
+const RULES: [Rules; 24] = [
     EachPair(pair::borrowed),
     EachKind(pair::units),
     EachPair(rotors::order),
@@ -55,6 +55,7 @@ const RULES: [Rules; 23] = [
     Frame(geometry::outputs),
     Frame(supply::voltage),
     Frame(supply::air),
+    EachKind(supply::own_laws),
     EachKind(limits::wide_tolerances),
     Frame(allocation::yaw),
     EachPair(allocation::power_bias),

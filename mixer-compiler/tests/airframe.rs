@@ -3,7 +3,9 @@
 use std::path::Path;
 
 use mixer_compiler::Source;
-use mixer_compiler::airframe::{Airframe, Airmode, Axis, Basis, Law, Method, Spin};
+use mixer_compiler::airframe::{
+    Airframe, Airmode, Axis, Basis, EXPONENT_DEVIATION, Law, Method, Spin, by_voltage,
+};
 use mixer_compiler::diagnostic::{Code, Diagnostics};
 
 fn workspace() -> &'static Path {
@@ -248,15 +250,90 @@ fn the_optional_keys_of_the_pair_and_of_the_vehicle_are_kept() {
     let units = "[layout]\narm_m = 0.3\nunits = 3\nfirst_angle_deg = 0\n";
     let bare = read(&format!("{PAIR}{units}[vehicle]\nmass_kg = 3.2\n"));
     assert_eq!(bare.vehicle.unwrap().inertia_kg_m2, None);
-    assert_eq!(bare.pairs[0].uncertainty, None);
+    assert_eq!(bare.pairs[0].measured.uncertainty, None);
     let full = read(&format!(
         "{PAIR}[pair.uncertainty]\nthrust_percent = 1.5\ntorque_percent = 100\n{units}\
          [vehicle]\nmass_kg = 3.2\ninertia_kg_m2 = [0.080, 0.087, 0.160]\n"
     ));
     assert_eq!(full.vehicle.unwrap().inertia_kg_m2, Some([0.080, 0.087, 0.160]));
-    let uncertainty = full.pairs[0].uncertainty.unwrap();
+    let uncertainty = full.pairs[0].measured.uncertainty.unwrap();
     assert_eq!(
         (uncertainty.thrust_percent, uncertainty.torque_percent),
         (1.5, 100.0)
     );
+}
+
+/// What was measured at another voltage and in other air is what it is at the frame's references: the same frame, whichever of
+/// its kinds gives them.
+#[test]
+fn kinds_are_brought_to_the_frame_s_references() {
+    let voltage = |reference: f64| {
+        format!(
+            "reference_v = {reference}\nrange_v = [12.0, 17.0]\nthrust_exponent = 1.75\ntorque_exponent = 1.8\n"
+        )
+    };
+    let air = |reference: f64| {
+        format!(
+            "reference_density_kg_m3 = {reference}\nrange_kg_m3 = [0.7, 1.4]\nthrust_exponent = 0.75\ntorque_exponent = 0.8\n"
+        )
+    };
+    let pair = |own: &str| {
+        format!(
+            "[[pair]]\nname = \"front\"\nbasis = \"biquadratic\"\nupper_spin = \"cw\"\n\
+             thrust_n = [5.2, -2.2, 12.4, -10.2, 4.4, 2.8, 12.2, 0.24]\ntorque_nm = [-0.07, -0.06, -0.13, 0.1, 0.04, -0.09, 0.14, 0.07]\n{own}\
+             [pair.lower_out]\nthrust_n = [0.2, 14.1, -1.7]\ntorque_nm = [-0.01, -0.2, 0.02]\n\
+             [pair.power]\npower_w = [0, 0, 0, 0, 0, 620, 90, 40, 560, 160, -60, 150, 8, 6, 5]\n\
+             [pair.uncertainty]\nthrust_percent = 1.5\ntorque_percent = 3.7\n"
+        )
+    };
+    let rotor = |own: &str| {
+        format!(
+            "[[rotor]]\nname = \"rear\"\nthrust_n = [0.2, 14.1, -1.7]\ntorque_nm = [0.01, 0.2, -0.02]\n{own}"
+        )
+    };
+    let units = "[[unit]]\nposition_m = [0.3, 0.0, 0.0]\nupper_spin = \"cw\"\npair = \"front\"\nchannels = [0, 1]\n\
+                 [[unit]]\nposition_m = [-0.3, 0.0, 0.0]\nupper_spin = \"cw\"\nrotor = \"rear\"\nchannels = [2]\n";
+    let frame = |pair: &str, rotor: &str, volts: f64, density: f64| {
+        read(&format!(
+            "name = \"two\"\n[throttle]\nmin = 0.1\nmax = 1.0\n{pair}{rotor}[voltage]\n{}[air]\n{}{units}",
+            voltage(volts),
+            air(density)
+        ))
+    };
+    let own = |of: &str, volts: f64, density: f64| {
+        format!("[{of}.voltage]\n{}[{of}.air]\n{}", voltage(volts), air(density))
+    };
+    let one = frame(&pair(""), &rotor(&own("rotor", 15.5, 1.1)), 14.0, 1.2);
+    let other = frame(&pair(&own("pair", 14.0, 1.2)), &rotor(""), 15.5, 1.1);
+    let by = [(1.75, 0.75), (1.8, 0.8)].map(|(v, rho)| (14.0_f64 / 15.5).powf(v) * (1.2_f64 / 1.1).powf(rho));
+    let same = |found: &[f64], wanted: &[f64], factor: f64| {
+        for (found, wanted) in found.iter().zip(wanted) {
+            assert!(
+                (found - factor * wanted).abs() < 1e-12 * wanted.abs().max(1.0),
+                "{found} {wanted} {factor}"
+            );
+        }
+    };
+    let (a, b) = (&one.pairs[0], &other.pairs[0]);
+    same(&a.thrust_n, &b.thrust_n, by[0]);
+    same(&a.torque_nm, &b.torque_nm, by[1]);
+    let [alone_a, alone_b] = [a, b].map(|pair| pair.lower_out.clone().unwrap());
+    same(&alone_a.thrust_n, &alone_b.thrust_n, by[0]);
+    same(&alone_a.torque_nm, &alone_b.torque_nm, by[1]);
+    let [rotor_a, rotor_b] = [&one, &other].map(|frame| frame.single_rotors[0].alone.clone());
+    same(&rotor_a.thrust_n, &rotor_b.thrust_n, by[0]);
+    same(&rotor_a.torque_nm, &rotor_b.torque_nm, by[1]);
+    // Power is torque times speed, and the thrust is as the density times the speed squared.
+    let [power_a, power_b] = [a, b].map(|pair| pair.power.clone().unwrap().power_w);
+    same(&power_a, &power_b, by[1] * (by[0] / (1.2 / 1.1)).sqrt());
+    // At any voltage and in any air both give the same.
+    for (volts, density) in [(12.0, 0.7), (14.8, 1.2), (17.0, 1.4)] {
+        let [k, l] = [&one, &other].map(|frame| frame.factors(volts, density));
+        assert!((k[0] * by[0] / l[0] - 1.0).abs() < 1e-12 && (k[1] * by[1] / l[1] - 1.0).abs() < 1e-12);
+    }
+    // What the exponent may be off widens the uncertainty, in tenths, up.
+    let off = by_voltage(EXPONENT_DEVIATION, 14.0, 15.5).hypot(by_voltage(EXPONENT_DEVIATION, 1.2, 1.1));
+    let [own, brought] = [a, b].map(|pair| pair.measured.uncertainty.unwrap().thrust_percent);
+    assert_eq!([own, brought], [1.5, (10.0 * off.hypot(1.5)).ceil() / 10.0]);
+    assert!(off > 0.4, "{off}");
 }

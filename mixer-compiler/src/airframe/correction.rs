@@ -114,8 +114,15 @@ impl Span {
     }
 }
 
-/// `[voltage]`.
-pub(super) fn read_voltage(table: &mut Fields<'_, '_>) -> Option<Correction> {
+/// `[voltage]` and `[air]` of these keys.
+pub(super) fn read(table: &mut Fields<'_, '_>, [voltage, air]: [&'static Key; 2]) -> [Option<Correction>; 2] {
+    let voltage = table.table(voltage, read_voltage);
+    let of_voltage = voltage.as_ref().map(Option::as_ref);
+    let air = table.table(air, |table| read_air(table, of_voltage));
+    [voltage.flatten(), air.flatten()]
+}
+
+fn read_voltage(table: &mut Fields<'_, '_>) -> Option<Correction> {
     let span = span(table, &VOLTAGE);
     let thrust = law(table, "thrust", [&THRUST_EXPONENT, &THRUST_POINTS], span);
     let torque = law(table, "torque", [&TORQUE_EXPONENT, &TORQUE_POINTS], span);
@@ -125,10 +132,7 @@ pub(super) fn read_voltage(table: &mut Fields<'_, '_>) -> Option<Correction> {
 /// `[air]`, whose exponents are those of the voltage less 1 where it has none of its own: a motor with
 /// its propeller gives T(V, sigma rho) = T(sigma V, rho) / sigma, so that thin air acts like a
 /// lower voltage. `voltage` is the table of the file, `None` in it where it was refused.
-pub(super) fn read_air(
-    table: &mut Fields<'_, '_>,
-    voltage: Option<Option<&Correction>>,
-) -> Option<Correction> {
+fn read_air(table: &mut Fields<'_, '_>, voltage: Option<Option<&Correction>>) -> Option<Correction> {
     let span = span(table, &AIR);
     let of_voltage = voltage.map(|voltage| voltage.map(|voltage| voltage.exponents().map(|k| k - 1.0)));
     let keys = [("thrust", &THRUST_OF_DENSITY), ("torque", &TORQUE_OF_DENSITY)];

@@ -1,8 +1,8 @@
 //! What a unit is: a coaxial pair or a single rotor.
 
+use super::measured::Measured;
 use super::pair::Pair;
 use super::single_rotor::SingleRotor;
-use super::uncertainty::Uncertainty;
 
 /// What a unit is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,11 +22,11 @@ impl<'a> Kind<'a> {
         }
     }
 
-    /// Error of the model; `None` where the file has none.
-    pub fn uncertainty(self) -> Option<&'a Uncertainty> {
+    /// How it was measured.
+    pub fn measured(self) -> &'a Measured {
         match self {
-            Kind::Pair(pair) => pair.uncertainty.as_ref(),
-            Kind::SingleRotor(rotor) => rotor.uncertainty.as_ref(),
+            Kind::Pair(pair) => &pair.measured,
+            Kind::SingleRotor(rotor) => &rotor.measured,
         }
     }
 

@@ -3,11 +3,13 @@
 use toml::Spanned;
 
 use super::basis::Basis;
+use super::correction;
 use super::limits;
+use super::measured::{self, Measured};
 use super::power::{self, Power};
 use super::rotor_alone::{self, RotorAlone};
 use super::throttle::Throttle;
-use super::uncertainty::{self, Uncertainty};
+use super::uncertainty;
 use crate::spec::keys::{Key, ValueKind, keys};
 use crate::spec::{Fields, Numbers};
 
@@ -38,6 +40,10 @@ keys! { TABLE = "[pair]":
         "Electrical power, for what `check` and the report say of least power.";
     UNCERTAINTY "uncertainty" = "", ValueKind::Table(&uncertainty::TABLE),
         "How far the model of the pair may be from the pair.";
+    VOLTAGE "voltage" = "", ValueKind::Table(&correction::VOLTAGE_TABLE),
+        "Law of its own bench, which brings it to the frame's reference.";
+    AIR "air" = "", ValueKind::Table(&correction::AIR_TABLE),
+        "Likewise of the density.";
     BORROWED_FROM "borrowed_from" = "\"the X8 of Chebbi et al. 2020\"", ValueKind::Text,
         "The vehicle whose pair this is, where it stands in for one that was not measured yet: a warning (MIX309), the verdict and saved files say so.";
     BENCH_OPTIONS "bench_options" = "[\"--swap\", \"--unit\", \"thrust=gf\"]", ValueKind::Texts,
@@ -119,16 +125,14 @@ pub struct Pair {
     pub upper_out: Option<RotorAlone>,
     /// Electrical power; `None` where the file has no `[pair.power]`.
     pub power: Option<Power>,
-    /// Error of the model; `None` where the file has no `[pair.uncertainty]`.
-    pub uncertainty: Option<Uncertainty>,
+    /// How it was measured.
+    pub measured: Measured,
     /// The vehicle whose pair stands in for one that was not measured yet; empty where it is the
     /// airframe's own.
     pub borrowed_from: String,
     /// Options of `cargo mixer identify` that the bench files needed to be read; empty where the file
     /// has none.
     pub bench_options: Vec<String>,
-    /// Least and greatest voltage of the bench's rows, V, where they were not brought to one.
-    pub bench_v: Option<[f64; 2]>,
 }
 
 /// The pair, and its bench's spin also where other keys are at fault.
@@ -145,11 +149,10 @@ pub(super) fn read(table: &mut Fields<'_, '_>, throttle: Option<&Throttle>) -> (
         rotor_alone::read(table, &rotor_alone::LOWER, throttle)
     });
     let power = table.table(&POWER, |table| power::read(table, throttle));
-    let uncertainty = table.table(&UNCERTAINTY, uncertainty::read);
     let borrowed_from = table.read::<String>(&BORROWED_FROM);
     let bench_options = table.read::<Vec<Spanned<String>>>(&BENCH_OPTIONS);
     let bench_options = bench_options.map_or(Vec::new(), Spanned::into_inner);
-    let bench_v = table.array(&BENCH_V);
+    let measured = measured::read(table, [&UNCERTAINTY, &BENCH_V, &VOLTAGE, &AIR]);
     let pair = || {
         Some(Pair {
             name: name.unwrap_or_default(),
@@ -161,10 +164,9 @@ pub(super) fn read(table: &mut Fields<'_, '_>, throttle: Option<&Throttle>) -> (
             lower_out: lower_out.flatten(),
             upper_out: upper_out.flatten(),
             power: power.flatten(),
-            uncertainty: uncertainty.flatten(),
+            measured,
             borrowed_from: borrowed_from.map(Spanned::into_inner).unwrap_or_default(),
             bench_options: bench_options.into_iter().map(Spanned::into_inner).collect(),
-            bench_v,
         })
     };
     (pair(), upper_spin)

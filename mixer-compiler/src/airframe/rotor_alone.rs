@@ -6,21 +6,19 @@ use super::throttle::Throttle;
 use crate::bounds::bisected;
 use crate::diagnostic::{Code, number};
 use crate::spec::Fields;
-use crate::spec::keys::{Key, ValueKind, keys};
+use crate::spec::keys::{Key, Shape, ValueKind, keys};
 
 keys! { LOWER_OUT = "[pair.lower_out]":
-    UPPER_THRUST_N "thrust_n" = "[0.2, 14.1, -1.7]", ValueKind::Numbers([3, 3]),
-        "Thrust of the upper rotor alone, N: a1, a2, a3 of a1 x + a2 x2 + a3 x3.".required();
-    UPPER_TORQUE_NM "torque_nm" = "[-0.01, -0.2, 0.02]", ValueKind::Numbers([3, 3]),
+    THRUST_N "thrust_n" = "[0.2, 14.1, -1.7]", ValueKind::Numbers([3, 3]),
+        "Thrust of the rotor that turns, N: a1, a2, a3 of a1 x + a2 x2 + a3 x3.".required();
+    TORQUE_NM "torque_nm" = "[-0.01, -0.2, 0.02]", ValueKind::Numbers([3, 3]),
         "Its torque, N m, signed as that of the pair.".required();
 }
 
-keys! { UPPER_OUT = "[pair.upper_out]":
-    LOWER_THRUST_N "thrust_n" = "[0.2, 14.1, -1.7]", ValueKind::Numbers([3, 3]),
-        "Thrust of the lower rotor alone, N: a1, a2, a3 of a1 x + a2 x2 + a3 x3.".required();
-    LOWER_TORQUE_NM "torque_nm" = "[0.01, 0.2, -0.02]", ValueKind::Numbers([3, 3]),
-        "Its torque, N m, signed as that of the pair.".required();
-}
+pub(super) const UPPER_OUT: Shape = Shape {
+    header: "[pair.upper_out]",
+    ..LOWER_OUT
+};
 
 /// `[pair.lower_out]`, `[pair.upper_out]` or `[[rotor]]`: a1 x + a2 x2 + a3 x3 in the throttle x of the rotor that turns.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,6 +37,11 @@ impl RotorAlone {
         [a3, 0.0, 0.0, 0.0, a2, 0.0, 0.0, a1, 0.0]
     }
 
+    /// Thrust and torque, each with its index.
+    pub(super) fn terms(&mut self) -> [(usize, &mut [f64]); 2] {
+        [(0, &mut self.thrust_n), (1, &mut self.torque_nm)]
+    }
+
     /// The efforts `[f, Q]` at the rotor's throttle, N and N m at the reference voltage.
     pub fn efforts(&self, throttle: f64) -> [f64; 2] {
         [self.thrust_n, self.torque_nm].map(|coefficients| value(coefficients, throttle))
@@ -55,8 +58,6 @@ impl RotorAlone {
 
 /// Whose curves a table has.
 pub(super) struct Whose {
-    /// The keys of thrust and torque.
-    pub(super) keys: [&'static Key; 2],
     /// The rotor in words.
     pub(super) what: &'static str,
     /// The sign of its torque.
@@ -65,20 +66,20 @@ pub(super) struct Whose {
     pub(super) torque_help: &'static str,
 }
 
+const TORQUE_HELP: &str = "torque is positive where the lower rotor outweighs the upper; it is the upper one that turns in `[pair.lower_out]`";
+
 /// Of `[pair.lower_out]`.
 pub(super) const UPPER: Whose = Whose {
-    keys: [&UPPER_THRUST_N, &UPPER_TORQUE_NM],
     what: "the upper rotor alone",
     sign: -1.0,
-    torque_help: "torque is positive where the lower rotor outweighs the upper; in `[pair.lower_out]` the upper rotor turns",
+    torque_help: TORQUE_HELP,
 };
 
 /// Of `[pair.upper_out]`.
 pub(super) const LOWER: Whose = Whose {
-    keys: [&LOWER_THRUST_N, &LOWER_TORQUE_NM],
     what: "the lower rotor alone",
     sign: 1.0,
-    torque_help: "torque is positive where the lower rotor outweighs the upper; in `[pair.upper_out]` the lower rotor turns",
+    torque_help: TORQUE_HELP,
 };
 
 /// Reads a table.
@@ -87,7 +88,8 @@ pub(super) fn read(
     whose: &Whose,
     throttle: Option<&Throttle>,
 ) -> Option<RotorAlone> {
-    let Whose { keys, what, sign, .. } = whose;
+    let Whose { what, sign, .. } = whose;
+    let keys: [&'static Key; 2] = [&THRUST_N, &TORQUE_NM];
     let terms = "a1, a2, a3 of a1 x + a2 x^2 + a3 x^3 in the throttle x of the rotor";
     let [thrust, torque] = keys.map(|key| {
         let found = limits::coefficients(table, key, ("a rotor alone", 3), |_| terms.to_owned())?;

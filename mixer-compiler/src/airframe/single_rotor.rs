@@ -1,8 +1,10 @@
 //! `[[rotor]]`: a single rotor, which has no partner on its mast.
 
+use super::correction;
+use super::measured::{self, Measured};
 use super::rotor_alone::{self, RotorAlone, Whose};
 use super::throttle::Throttle;
-use super::uncertainty::{self, Uncertainty};
+use super::uncertainty;
 use crate::spec::keys::{ValueKind, keys};
 use crate::spec::{Fields, Spanned};
 
@@ -15,10 +17,15 @@ keys! { TABLE = "[[rotor]]":
         "Torque likewise, N m, positive whichever way it turns.".required();
     UNCERTAINTY "uncertainty" = "", ValueKind::Table(&uncertainty::TABLE),
         "How far the model of the rotor may be from the rotor.";
+    BENCH_V "bench_v" = "[13.96, 14.9]", ValueKind::Numbers([2, 2]),
+        "As that of a pair.";
+    VOLTAGE "voltage" = "", ValueKind::Table(&correction::VOLTAGE_TABLE),
+        "Law of its own bench, which brings it to the frame's reference.";
+    AIR "air" = "", ValueKind::Table(&correction::AIR_TABLE),
+        "Likewise of the density.";
 }
 
 const WHOSE: Whose = Whose {
-    keys: [&THRUST_N, &TORQUE_NM],
     what: "a single rotor",
     sign: 1.0,
     torque_help: "the size of the torque counts; `upper_spin` of the unit says which way it turns",
@@ -32,17 +39,17 @@ pub struct SingleRotor {
     pub name: String,
     /// Its thrust and torque; the torque is positive.
     pub alone: RotorAlone,
-    /// Error of the model; `None` where the file has no `[rotor.uncertainty]`.
-    pub uncertainty: Option<Uncertainty>,
+    /// How it was measured.
+    pub measured: Measured,
 }
 
 pub(super) fn read(table: &mut Fields<'_, '_>, throttle: Option<&Throttle>) -> Option<SingleRotor> {
     let name = table.read::<String>(&NAME).map(Spanned::into_inner);
     let alone = rotor_alone::read(table, &WHOSE, throttle);
-    let uncertainty = table.table(&UNCERTAINTY, uncertainty::read);
+    let measured = measured::read(table, [&UNCERTAINTY, &BENCH_V, &VOLTAGE, &AIR]);
     Some(SingleRotor {
         name: name?,
         alone: alone?,
-        uncertainty: uncertainty.flatten(),
+        measured,
     })
 }

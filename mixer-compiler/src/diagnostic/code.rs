@@ -76,6 +76,8 @@ catalogue! {
     VoltagePoints = 105,
     /// A law of voltage or density that multiplies thrust or torque beyond any pack or air.
     FactorTooLarge = 106,
+    /// Kinds of units that were measured at unlike voltages or densities, and no law brings them together.
+    References = 107,
     /// An output channel that two rotors share.
     DuplicateChannel = 110,
     /// An output channel beyond the number of rotors, which leaves another without a rotor.
@@ -163,6 +165,8 @@ catalogue! {
     NoVoltage = 323,
     /// A `[voltage]` beside a pair whose rows have the sag of their own supply.
     SagTwice = 324,
+    /// A kind of unit whose own law of voltage or density is not the frame's.
+    UnlikeLaw = 325,
     /// A tolerance above a hundredth of a unit's largest effort.
     WideTolerance = 330,
     /// A yaw reserve that the units cannot hold at any thrust.

@@ -158,7 +158,7 @@ const OF_SHAPE: &[Code] = &[
 
 /// A rule on the shape of a map. Programs write a deviation beside their coefficients, which are then right as such.
 fn of_shape(facts: &KindFacts<'_>, holds: bool, message: String) -> Rule {
-    let (label, mend) = match facts.view.of.uncertainty() {
+    let (label, mend) = match &facts.view.of.measured().uncertainty {
         None => (
             "a coefficient off?",
             "check each coefficient and their order, which that of the basis fixes",

@@ -1,8 +1,7 @@
 //! Rules on `[voltage]` and `[air]`.
 
-use super::rule::{Facts, Rule};
-use crate::airframe::TYPICAL_EXPONENT;
-use crate::airframe::{Correction, Law};
+use super::rule::{Facts, KindFacts, Rule};
+use crate::airframe::{APART, Correction, Law, TYPICAL_EXPONENT};
 use crate::diagnostic::{Code, number, rounded};
 
 /// What a pack of lithium cells loses of its voltage from full to empty, as a share.
@@ -17,9 +16,6 @@ const ONE_CELL_THRUST_N: f64 = 5.0;
 /// Factors that packs and air give: 0.6 to 1.4 from empty to full, 0.6 to 1.1 from mountain to coast.
 const FACTORS: [f64; 2] = [0.35, 2.0];
 
-/// How far voltages of the bench are apart, or the reference from them, as a share, where it matters.
-const APART: f64 = 0.01;
-
 /// What brings the rows of a bench to one voltage.
 const TO_ONE: &str = "run identify again with --voltage-exponent 1.75 --cells N, which brings the rows to one voltage and \
                       writes [voltage]";
@@ -29,7 +25,11 @@ const TO_ONE: &str = "run identify again with --voltage-exponent 1.75 --cells N,
 /// known; without `[vehicle]` it may be a pair on a stand.
 pub(super) fn voltage(facts: &Facts<'_>) -> Vec<Rule> {
     let Some(voltage) = &facts.airframe.voltage else {
-        let help = match facts.airframe.pairs.iter().find_map(|pair| pair.bench_v) {
+        let help = match facts
+            .kinds
+            .iter()
+            .find_map(|kind| kind.view.of.measured().bench_v)
+        {
             Some(_) => TO_ONE,
             None => {
                 "add [voltage] with reference_v (the bench's), range_v (the pack's), thrust_exponent and torque_exponent \
@@ -62,15 +62,18 @@ pub(super) fn voltage(facts: &Facts<'_>) -> Vec<Rule> {
             "multiply reference_v, range_v and the voltages of points by the number of cells in series",
         ),
     ];
-    for [low, high] in facts.airframe.pairs.iter().filter_map(|pair| pair.bench_v) {
+    let kinds = facts.kinds.iter().map(|kind| kind.view.of.measured());
+    for (law, [low, high]) in kinds.filter_map(|of| Some((&of.own_laws[0], of.bench_v?))) {
+        let held = law.as_ref().unwrap_or(voltage).reference;
         let near = [(1.0 - APART) * high, (1.0 + APART) * low];
         rules.push(
-            Rule::within(Code::SagTwice, "voltage.reference", voltage.reference, near).says(
+            Rule::within(Code::SagTwice, "voltage.reference", held, near).says(
                 format!(
-                    "the bench had {} to {} V, which are in the pair as they were: with a reference of {reference} V [voltage] \
+                    "the bench had {} to {} V, which are in the pair as they were: with a reference of {} V [voltage] \
                      counts the sag twice, or takes the pair for that of another voltage",
                     number(low),
-                    number(high)
+                    number(high),
+                    number(held)
                 ),
                 "beside rows at their own voltages",
                 TO_ONE,
@@ -85,6 +88,29 @@ pub(super) fn voltage(facts: &Facts<'_>) -> Vec<Rule> {
 pub(super) fn air(facts: &Facts<'_>) -> Vec<Rule> {
     let air = facts.airframe.air.as_ref();
     air.map(|air| laws(air, &AIR)).unwrap_or_default()
+}
+
+/// The laws of a kind against those of the frame, which all units follow in flight.
+pub(super) fn own_laws(facts: &KindFacts<'_>) -> Vec<Rule> {
+    let frame = [(&facts.view.voltage, &VOLTAGE), (&facts.view.air, &AIR)];
+    let laws = facts.view.of.measured().own_laws.iter().zip(frame);
+    let rule = |(own, (frame, limits)): (&Option<Correction>, (&Option<Correction>, &Limits))| {
+        let (own, frame, Limits { table, unit, .. }) = (own.as_ref()?, frame.as_ref()?, limits);
+        let off = |x| {
+            100.0 * (own.thrust_factor(x) / own.thrust_factor(frame.reference) / frame.thrust_factor(x) - 1.0)
+        };
+        let ([low, high], [from, to]) = (frame.range.map(off), frame.range.map(number));
+        let most = low.abs().max(high.abs());
+        Some(Rule::at_most(Code::UnlikeLaw, format!("pair.{table}"), most, 100.0 * APART).says(
+            format!(
+                "thrust by its own law is {low:+.1} % at {from} {unit} and {high:+.1} % at {to} {unit} off that by the frame's \
+                 `[{table}]`, which all follow"
+            ),
+            "another law",
+            "identify each kind with the same exponents, or narrow the frame's range",
+        ))
+    };
+    laws.filter_map(rule).collect()
 }
 
 /// Words and limits of the laws over one measured quantity.

@@ -8,7 +8,7 @@ use std::fmt;
 use mixer_rt::Wrench;
 
 use mixer_compiler::Compiled;
-use mixer_compiler::airframe::{Axis, Spin, Unit};
+use mixer_compiler::airframe::{Airframe, Axis, Spin, Unit};
 use mixer_compiler::model::scales;
 
 /// Share of an axis' size that is asked: small enough to be delivered in full.
@@ -127,6 +127,18 @@ pub fn in_words(units: &[([f64; 3], Spin, Outputs)]) -> Vec<String> {
         }
     });
     each.collect()
+}
+
+/// [`in_words`] of a frame, with the kind of each unit where they differ.
+pub fn frame(airframe: &Airframe) -> Vec<String> {
+    let units = airframe.units.iter();
+    let places = units.clone().map(|unit| {
+        let outputs = (unit.upper_channel, unit.lower_channel);
+        (unit.position_m, unit.upper_spin, outputs)
+    });
+    let told = in_words(&places.collect::<Vec<_>>()).into_iter().zip(units);
+    told.map(|(told, unit)| told + &airframe.named_kind(unit))
+        .collect()
 }
 
 /// Where a unit is among the others: `front right`.

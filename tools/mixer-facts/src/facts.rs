@@ -180,16 +180,7 @@ fn gives(list: &mut List, compiled: &Compiled) {
         .json("rotors", airframe.rotors())
         .json("arms_m", arms)
         .in_verdict();
-    let frame = airframe.units.iter().map(|unit| {
-        let outputs = (unit.upper_channel, unit.lower_channel);
-        (unit.position_m, unit.upper_spin, outputs)
-    });
-    let frame = checklist::in_words(&frame.collect::<Vec<_>>())
-        .into_iter()
-        .zip(&airframe.units);
-    let frame: Vec<String> = frame
-        .map(|(told, unit)| told + &airframe.named_kind(unit))
-        .collect();
+    let frame = checklist::frame(airframe);
     let lines: Vec<String> = frame.chunks(UNITS_A_LINE).map(|units| units.join("; ")).collect();
     list.say("frame", "", "", lines.join(&format!(";\n{:20}", "")))
         .json("frame", frame.join("; "))
@@ -403,7 +394,12 @@ fn power(list: &mut List, compiled: &Compiled) {
     list.say("power bias", value, "N m per N", words)
         .json("power_bias_nm_per_n", bias)
         .json("power", power);
-    let Some(power) = power else { return };
+    let Some(power) = power else {
+        if airframe.single_units() > 0 && airframe.pairs.iter().any(|pair| pair.power.is_some()) {
+            list.say("power", "", "", "not known: single rotors have no power map");
+        }
+        return;
+    };
     let what = match power.is_hover {
         true => "in hover",
         false => "half of the largest bare thrust",
@@ -472,7 +468,7 @@ fn model(list: &mut List, compiled: &Compiled) {
     let kinds: Vec<Kind<'_>> = airframe.views().map(|view| view.of).collect();
     let pairs = airframe.pairs.iter().zip(&compiled.of_pairs);
     let told = kinds.iter().map(|kind| {
-        let of_uncertainty = or_nothing(kind.uncertainty(), |uncertainty| {
+        let of_uncertainty = or_nothing(kind.measured().uncertainty, |uncertainty| {
             format!(
                 ", {}: +- {} % of the largest thrust, {} % of the largest torque (one standard deviation)",
                 uncertainty.source(),
@@ -499,7 +495,7 @@ fn model(list: &mut List, compiled: &Compiled) {
                 "torque_percent": uncertainty.torque_percent,
             })
         };
-        kind.uncertainty().map(json)
+        kind.measured().uncertainty.as_ref().map(json)
     });
     let uncertainty: Vec<_> = uncertainty.collect();
     let borrowed = airframe.pairs.iter().map(|pair| pair.borrowed_from.as_str());

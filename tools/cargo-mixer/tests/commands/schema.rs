@@ -154,6 +154,22 @@ fn the_parser_agrees_key_by_key() {
                  [pair.upper_out]\nthrust_n = [1.0, 10.0, 0.0]\ntorque_nm = [0.01, 0.2, 0.0]\n\
                  [pair.power]\npower_w = [0, 0, 0, 0, 0, 260, 30, 20, 240, 20, -10, 40, 2, 3, 4]\n\
                  [pair.uncertainty]\nthrust_percent = 1.5\ntorque_percent = 100\nsource = \"bench\"\n";
+    let own = |of: &str, law: &str| {
+        format!(
+            "[{of}.voltage]\nreference_v = 14.8\nrange_v = [12.8, 16.8]\n{law}\
+             [{of}.air]\nreference_density_kg_m3 = 1.2\nrange_kg_m3 = [0.7, 1.4]\nthrust_exponent = 0.75\ntorque_exponent = 0.75\n"
+        )
+    };
+    let air = "[air]\nreference_density_kg_m3 = 1.2\nrange_kg_m3 = [0.7, 1.4]\nthrust_exponent = 0.75\ntorque_exponent = 0.75\n";
+    let single = |law: &str| {
+        format!(
+            "name = \"single\"\n{pair}\n{}[[rotor]]\nname = \"single\"\nthrust_n = [1.0, 10.0, 0.0]\ntorque_nm = [0.01, 0.2, 0.0]\n\
+             bench_v = [14.0, 15.0]\n[rotor.uncertainty]\nthrust_percent = 1.5\ntorque_percent = 3.0\nsource = \"bench\"\n{}{air}\
+             [[unit]]\nposition_m = [-0.3, 0.0, 0.0]\nupper_spin = \"cw\"\nchannels = [2]\nrotor = \"single\"\n{UNIT}",
+            own("pair", law),
+            own("rotor", law)
+        )
+    };
     let forms = [
         format!(
             "name = \"one\"\ndescription = \"x\"\n{}{UNIT}pair = \"front\"\n[inverse]\nthrust_tolerance_n = 0.1\ntorque_tolerance_nm = 0.01\n\
@@ -182,11 +198,9 @@ fn the_parser_agrees_key_by_key() {
             "pairs = [\"front\", \"rear\", \"rear\", \"front\"]\nchannels",
             1,
         ),
-        format!(
-            "name = \"single\"\n{pair}\n[[rotor]]\nname = \"single\"\nthrust_n = [1.0, 10.0, 0.0]\ntorque_nm = [0.01, 0.2, 0.0]\n\
-             [rotor.uncertainty]\nthrust_percent = 1.5\ntorque_percent = 3.0\nsource = \"bench\"\n\
-             [[unit]]\nposition_m = [-0.3, 0.0, 0.0]\nupper_spin = \"cw\"\nchannels = [2]\nrotor = \"single\"\n{UNIT}"
-        ),
+        single("thrust_exponent = 1.7\ntorque_exponent = 1.7\n"),
+        single(points),
+        single(other),
         format!(
             "name = \"four\"\n{}[layout]\narm_m = 0.45\nunits = 3\nfirst_angle_deg = 60\nfirst_spin = \"ccw\"\n\
              [vehicle]\nmass_kg = 3.0\nrotor_lag_s = 0.05\nrotor_brakes = false\n",

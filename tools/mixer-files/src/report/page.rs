@@ -315,7 +315,7 @@ fn authority_section(study: &Study<'_>) -> Markup {
         .collect();
     let views = study.compiled.airframe.views();
     let mut sources: Vec<&str> = views
-        .filter_map(|view| Some(view.of.uncertainty()?.source()))
+        .filter_map(|view| Some(view.of.measured().uncertainty?.source()))
         .collect();
     sources.dedup();
     html! {
