@@ -112,6 +112,10 @@ impl Place {
             }
             Some(path) => {
                 crate::file::save(path, &text).map_err(print_error)?;
+                if text.contains("\n[[rotor]]") {
+                    self.next("paste it into an airframe: a [[unit]] has it by its name");
+                    return Ok(());
+                }
                 self.next(format_args!(
                     "cargo mixer new --frame x8 --arm METRE --pair {} -o AIRFRAME.toml",
                     path.display()

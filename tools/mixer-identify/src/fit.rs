@@ -26,7 +26,6 @@ pub mod pair;
 pub mod polynomial;
 pub mod power;
 pub mod robust;
-pub mod uncertainty;
 pub mod voltage;
 pub mod wishes;
 

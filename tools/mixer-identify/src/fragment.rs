@@ -1,26 +1,25 @@
 //! The tables of an airframe file as TOML, with what there is to say of each in comments.
 
-use mixer_compiler::airframe::TYPICAL_EXPONENT;
+use mixer_compiler::airframe::{Basis, TYPICAL_EXPONENT, Uncertainty};
 use std::fmt::Write as _;
 
 use mixer_compiler::diagnostic::{self, printable};
-use toml_edit::{DocumentMut, value};
+use toml_edit::{ArrayOfTables, DocumentMut, Item, value};
 
-use super::bench::BenchKind;
-use super::fit::power::Power;
+use super::bench::{Bench, BenchKind};
+use super::fit::basis::ThrottleBox;
+use super::fit::power::{LeastPower, Power};
 use super::fit::{Fit, hundredths};
 use super::identified::Identified;
+use super::rotor::Turning;
 use super::rotor::predict::Predicted;
 use super::statement::{Detail, Statement, of_identified, of_predicted, runs};
 use super::statistics::extent;
-use super::table::{commented, numbers, table, texts};
+use super::table::{self, commented, numbers, table, texts};
 
 /// The key of the torque of least power. Which airframe it is decides whether that saves anything,
 /// so that it stands in a comment.
 pub const POWER_BIAS: &str = "power_bias_nm_per_n";
-
-/// The key of the options that the bench files needed to be read.
-const BENCH_OPTIONS: &str = "bench_options";
 
 /// Columns of a comment.
 const WIDTH: usize = 104;
@@ -42,59 +41,54 @@ pub fn text(identified: &Identified) -> String {
 pub fn tables(id: &Identified) -> String {
     let statements = of_identified(id);
     let about = |table: &str| comments(&statements, table);
-    let mut document = DocumentMut::new();
     let mut tail = String::new();
-    let power = match &id.power {
-        Some(Power::Identified(found)) => found.power_w.clone(),
-        _ => None,
-    };
-    if let Some(pair) = &id.pair {
-        let limits = [
-            ("min", value(pair.throttle.min)),
-            ("max", value(pair.throttle.max)),
-        ];
-        document.insert("throttle", table(&about("throttle"), limits));
+    let volts = rows_v(id).filter(|_| !id.closed_loop);
+    let bench_v = |is_brought: bool| Some(("bench_v", numbers(volts.filter(|_| !is_brought)?)));
+    let mut document = DocumentMut::new();
+    if let Some(found) = &id.pair {
         let of = |fit: &Fit| {
-            let terms = pair.terms.iter().zip(&fit.ci95);
+            let terms = found.terms.iter().zip(&fit.ci95);
             commented(
                 &fit.coefficients,
                 terms.map(|(term, ci)| format!("{term:<4} +- {ci:.3e}")),
             )
         };
-        let mut entries = vec![
-            ("basis", value(pair.basis.name())),
-            ("thrust_n", of(&pair.thrust)),
-            ("torque_nm", of(&pair.torque)),
-            ("upper_spin", value(pair.upper_spin)),
-        ];
-        if pair.lower_is_stronger {
-            entries.push(("stronger", value("lower")));
+        let about = |table: &str| about(table) + if table == "pair" { SIGN } else { "" };
+        let terms = [of(&found.thrust), of(&found.torque)];
+        let alone = runs(found).map(|(turning, alone)| (turning, [alone.thrust_n, alone.torque_nm]));
+        let mut entries = pair(&about, found.basis, terms, found.lower_is_stronger, alone);
+        match &id.power {
+            Some(Power::Identified(LeastPower {
+                power_w: Some(power_w),
+                ..
+            })) => {
+                let map = [("power_w", numbers(power_w.iter().copied()))];
+                entries.push(("power", table(&about("pair.power"), map)));
+            }
+            _ => tail = format!("\n{}", about("pair.power")),
         }
-        if let Some(uncertainty) = &pair.uncertainty {
-            entries.push(("uncertainty", uncertainty.table()));
-        }
-        for (turning, alone) in runs(pair) {
-            let curves = [
-                ("thrust_n", numbers(alone.thrust_n)),
-                ("torque_nm", numbers(alone.torque_nm)),
-            ];
-            entries.push((turning.key(), table(&about(turning.table()), curves)));
-        }
-        match power {
-            Some(power_w) => entries.push((
-                "power",
-                table(&about("pair.power"), [("power_w", numbers(power_w))]),
-            )),
-            None => tail = format!("\n{}", about("pair.power")),
-        }
-        let volts = rows_v(id).filter(|_| pair.normalised_to_v.is_none() && !id.closed_loop);
-        if let Some(volts) = volts {
-            entries.push(("bench_v", numbers(volts)));
-        }
-        if !id.options.is_empty() {
-            entries.push((BENCH_OPTIONS, texts(&id.options)));
-        }
-        document.insert("pair", table(&(about("pair") + SIGN), entries));
+        entries.extend(bench_v(found.normalised_to_v.is_some()));
+        document = model(
+            &about,
+            found.throttle,
+            "pair",
+            entries,
+            found.uncertainty.as_ref(),
+            &id.options,
+        );
+    }
+    if let Some(found) = &id.rotor {
+        let mut entries = vec![("name", value(&found.name))];
+        entries.extend(curves(found.curves.both()));
+        entries.extend(bench_v(found.run.exponents != [0.0; 2]));
+        document = model(
+            &about,
+            found.throttle,
+            "rotor",
+            entries,
+            Some(&found.uncertainty),
+            &[],
+        );
     }
     let of = id.voltage.as_ref();
     let supply = Supply {
@@ -102,7 +96,6 @@ pub fn tables(id: &Identified) -> String {
         range_v: of.map(|v| v.range_v),
         pack_v: id.pack_v,
         exponents: of.map_or([None; 2], |v| [v.thrust.value(), v.torque.value()]),
-        of_a_pair: id.pair.is_some(),
         closed_loop: id.closed_loop,
     };
     voltage(&mut document, &mut tail, &about("voltage"), &supply);
@@ -110,10 +103,7 @@ pub fn tables(id: &Identified) -> String {
     for warning in &id.warnings {
         head += &comment("! ", warning);
     }
-    let exponents = document
-        .get("voltage")
-        .and_then(|v| v.get("thrust_exponent").and(v.get("torque_exponent")));
-    let air = id.air.table(exponents.is_some());
+    let air = id.air.table(document.contains_key("voltage"));
     format!("{head}{document}{tail}{air}")
 }
 
@@ -123,10 +113,67 @@ const SIGN: &str = "# Torque is positive where the lower rotor outweighs the upp
 const MEASURED: &str = "# The voltage of the flight must be measured where the bench's was: at the same point of the wiring, under load.\n\
                         # Behind other leads, or at no load, k is wrong by what the voltage drops in between.\n";
 
-/// Least and greatest voltage of the pair's rows, V.
+/// `[throttle]`, and `[pair]` or `[[rotor]]`, with what stands above a table by its name.
+pub(crate) fn model(
+    about: &dyn Fn(&str) -> String,
+    ThrottleBox { min, max }: ThrottleBox,
+    name: &str,
+    mut entries: Vec<(&str, Item)>,
+    uncertainty: Option<&Uncertainty>,
+    options: &[String],
+) -> DocumentMut {
+    entries.extend(uncertainty.map(|of| ("uncertainty", table::uncertainty(of))));
+    if !options.is_empty() {
+        entries.push(("bench_options", texts(options)));
+    }
+    let mut document = DocumentMut::new();
+    document.insert(
+        "throttle",
+        table(&about("throttle"), [("min", value(min)), ("max", value(max))]),
+    );
+    let own = match table(&about(name), entries) {
+        Item::Table(own) if name == "rotor" => Item::ArrayOfTables(ArrayOfTables::from_iter([own])),
+        own => own,
+    };
+    document.insert(name, own);
+    document
+}
+
+/// What `[pair]` has, with its rotors alone.
+pub(crate) fn pair(
+    about: &dyn Fn(&str) -> String,
+    basis: Basis,
+    [thrust_n, torque_nm]: [Item; 2],
+    lower_is_stronger: bool,
+    alone: impl Iterator<Item = (Turning, [[f64; 3]; 2])>,
+) -> Vec<(&'static str, Item)> {
+    let mut entries = vec![
+        ("basis", value(basis.name())),
+        ("thrust_n", thrust_n),
+        ("torque_nm", torque_nm),
+        ("upper_spin", value("cw")),
+    ];
+    if lower_is_stronger {
+        entries.push(("stronger", value("lower")));
+    }
+    entries.extend(alone.map(|(turning, of)| (turning.key(), table(&about(turning.table()), curves(of)))));
+    entries
+}
+
+fn curves([thrust_n, torque_nm]: [[f64; 3]; 2]) -> [(&'static str, Item); 2] {
+    [("thrust_n", numbers(thrust_n)), ("torque_nm", numbers(torque_nm))]
+}
+
+/// Least and greatest voltage of the rows of the model, V.
 fn rows_v(id: &Identified) -> Option<[f64; 2]> {
-    let of_pair = id.files.iter().filter(|file| file.kind == BenchKind::Pair);
-    let [low, high] = extent(of_pair.flat_map(|file| &file.points).map(|p| p.voltage));
+    let is_pair = |file: &&Bench| (file.kind == BenchKind::Pair) == id.pair.is_some();
+    let [low, high] = extent(
+        id.files
+            .iter()
+            .filter(is_pair)
+            .flat_map(|file| &file.points)
+            .map(|p| p.voltage),
+    );
     (low <= high).then(|| [low, high].map(hundredths))
 }
 
@@ -137,13 +184,16 @@ struct Supply {
     range_v: Option<[f64; 2]>,
     pack_v: Option<[f64; 2]>,
     exponents: [Option<f64>; 2],
-    of_a_pair: bool,
     closed_loop: bool,
 }
 
 /// `[voltage]`. Beside a pair it must be complete, or `check` would refuse the airframe: with one
 /// exponent only, or without the voltage of the map, it is a comment for the user to complete.
 fn voltage(document: &mut DocumentMut, tail: &mut String, about: &str, of: &Supply) {
+    // A speed that is held does not follow the voltage.
+    if of.closed_loop {
+        return;
+    }
     let thousandths = |x: f64| (1000.0 * x).round() / 1000.0;
     let exponents = of.exponents.map(|e| e.map(thousandths));
     let known = exponents.iter().flatten().count();
@@ -163,20 +213,15 @@ fn voltage(document: &mut DocumentMut, tail: &mut String, about: &str, of: &Supp
         about.to_owned()
     };
     match (of.reference_v, range) {
-        (Some(reference), Some(range)) if known == 2 || (known > 0 && !of.of_a_pair) => {
+        (Some(reference), Some(range)) if known == 2 => {
             let mut entries = vec![("reference_v", value(reference)), ("range_v", numbers(range))];
             for (key, exponent) in ["thrust_exponent", "torque_exponent"].into_iter().zip(exponents) {
-                match exponent {
-                    Some(exponent) => entries.push((key, value(exponent))),
-                    None => *tail += &format!("# {key} = ?\n"),
-                }
+                entries.extend(exponent.map(|exponent| (key, value(exponent))));
             }
             document.insert("voltage", table(&about, entries));
         }
-        // A speed that is held does not follow the voltage.
-        _ if of.closed_loop => {}
         (reference, range) => {
-            let text = match of.range_v.filter(|_| known == 0 && of.of_a_pair) {
+            let text = match of.range_v.filter(|_| known == 0) {
                 Some(_) => BRING.to_owned(),
                 None => to_fill_in(reference, range, exponents),
             };
@@ -220,10 +265,8 @@ pub fn of_prediction(predicted: &Predicted) -> String {
     for warning in &predicted.warnings {
         head += &comment("! ", warning);
     }
-    let mut document = predicted.pair.tables(&|table| comments(&statements, table));
-    if !predicted.options.is_empty() {
-        document["pair"][BENCH_OPTIONS] = texts(&predicted.options);
-    }
+    let about = |table: &str| comments(&statements, table);
+    let mut document = predicted.pair.tables(&about, &predicted.options);
     let run = &predicted.runs[0];
     let reference_v = predicted.reference_v.map(hundredths);
     let supply = Supply {
@@ -231,18 +274,10 @@ pub fn of_prediction(predicted: &Predicted) -> String {
         range_v: run.range_v,
         pack_v: predicted.pack_v,
         exponents: run.exponents.map(|exponent| reference_v.map(|_| exponent)),
-        of_a_pair: true,
         closed_loop: run.exponents == [0.0; 2],
     };
     let mut tail = String::new();
-    if !supply.closed_loop {
-        voltage(
-            &mut document,
-            &mut tail,
-            &comments(&statements, "voltage"),
-            &supply,
-        );
-    }
+    voltage(&mut document, &mut tail, &about("voltage"), &supply);
     let air = predicted.air.table(document.contains_key("voltage"));
     format!("{head}{document}{tail}{air}")
 }

@@ -1,20 +1,24 @@
 //! From bench files to what was identified.
 
+use mixer_compiler::airframe::{Uncertainty, by_voltage};
 use serde::Serialize;
 
 use crate::air::{Air, DENSITY_EXPONENT};
 use crate::bench::read::Reading;
 use crate::bench::{Bench, BenchKind, Point, Preparation, equal_commands, is_one_signal};
 use crate::fit::balance::balanced;
+use crate::fit::basis::ThrottleBox;
 use crate::fit::hundredths;
-use crate::fit::pair::{self, Pair};
+use crate::fit::pair::{self, Pair, names};
 use crate::fit::power::{self, Power};
 use crate::fit::voltage::{self, Exponent, Voltage};
 use crate::fit::wishes::FitOptions;
-use crate::numbers::{self, Anomaly};
+use crate::numbers;
 use crate::refusal::Refusal;
 use crate::rotor::Turning;
 use crate::rotor::alone;
+use crate::rotor::predict::{Out, UNMEASURED_TORQUE};
+use crate::rotor::single::{RunFacts, Single};
 use crate::statistics::extent;
 
 /// Everything that decides an identification, besides the files.
@@ -30,6 +34,22 @@ pub struct Settings {
     pub options: Vec<String>,
 }
 
+/// `[[rotor]]`: a rotor alone, of its run.
+#[derive(Debug, Clone, Serialize)]
+pub struct SingleRotor {
+    /// The name by which units have it.
+    pub name: String,
+    /// Its thrust and torque.
+    #[serde(flatten)]
+    pub curves: Out,
+    /// The throttles to command.
+    pub throttle: ThrottleBox,
+    /// One standard deviation.
+    pub uncertainty: Uncertainty,
+    /// The run.
+    pub run: Single,
+}
+
 /// All that `--json` prints.
 #[derive(Debug, Clone, Serialize)]
 pub struct Identified {
@@ -37,6 +57,8 @@ pub struct Identified {
     pub generator: String,
     /// The map; none where all files are of single rotors.
     pub pair: Option<Pair>,
+    /// The single rotor; none where there is a map.
+    pub rotor: Option<SingleRotor>,
     /// The effect of the voltage; none where no file has a voltage.
     pub voltage: Option<Voltage>,
     /// The air.
@@ -121,8 +143,6 @@ pub fn with_runs(
         let of_runs = with_alone(pair, &runs, voltage.as_ref(), &mut warnings);
         Some(of_runs?)
     } else {
-        only_single(&benches, voltage.as_ref())?;
-        warnings.extend(anomalies.iter().map(Anomaly::sentence));
         no_runs(&runs)?;
         None
     };
@@ -142,12 +162,23 @@ pub fn with_runs(
     }
     let reference_v = reference(pair.as_ref(), voltage.as_ref(), wishes.reference_v, &mut warnings)?;
     in_pack(reference_v, wishes.pack_v)?;
+    let rotor = match pair {
+        Some(_) => None,
+        None => Some(single_rotor(
+            &benches,
+            voltage.as_ref(),
+            reference_v,
+            wishes,
+            &mut warnings,
+        )?),
+    };
     let power = pair
         .as_ref()
         .map(|pair| power::examine(&benches, pair, voltage.as_ref()));
     Ok(Identified {
         generator: format!("cargo mixer identify {}", env!("CARGO_PKG_VERSION")),
         pair,
+        rotor,
         voltage,
         air,
         power,
@@ -238,11 +269,6 @@ pub(crate) fn in_pack(reference_v: Option<f64>, pack_v: Option<[f64; 2]>) -> Res
     }
 }
 
-fn names(benches: &[Bench]) -> String {
-    let names: Vec<&str> = benches.iter().map(|b| b.file.as_str()).collect();
-    names.join(", ")
-}
-
 /// Refuses pairs whose rotors have the same throttle throughout.
 fn two_signals(benches: &[Bench]) -> Result<(), Refusal> {
     let pairs = benches.iter().filter(|bench| bench.kind == BenchKind::Pair);
@@ -308,12 +334,6 @@ fn declared(
             "the supply voltage of every row, in a column of its own (--column voltage=HEADER)",
         );
     };
-    if !benches.iter().any(|b| b.kind == BenchKind::Pair) {
-        return refuse(
-            "one throttle only, so there is no map of a pair",
-            "a sweep of both throttles independently; or no --voltage-exponent, to identify it from these files",
-        );
-    }
     Ok(Voltage {
         thrust: voltage.thrust.declared(thrust),
         torque: voltage.torque.declared(torque),
@@ -321,30 +341,53 @@ fn declared(
     })
 }
 
-/// Without a pair the files must at least give an exponent.
-fn only_single(benches: &[Bench], voltage: Option<&Voltage>) -> Result<(), Refusal> {
-    let files = names(benches);
-    let paths: Vec<&str> = benches.iter().map(|bench| bench.file.as_str()).collect();
-    let for_pair = format!(
-        "for [pair]: a sweep of both throttles independently, with thrust and torque of the pair; of ONE rotor's run cargo mixer \
-         predict makes a pair; if this signal drives both rotors, {}",
-        equal_commands(&paths)
-    );
-    let (why, needed) = match voltage.map(|v| &v.thrust) {
-        Some(Exponent::Identified(_)) => return Ok(()),
-        Some(Exponent::Refused { reason, needed }) => {
-            (format!("no voltage exponent: {reason}"), needed.as_str())
-        }
-        Some(Exponent::Declared { .. } | Exponent::NotMeasured) | None => (
-            "no voltage was measured".to_owned(),
-            "the same sweep at two supply voltages, with a voltage column",
-        ),
+/// Least throttle that is commanded of a rotor whose run begins lower.
+const LEAST_IDLE: f64 = 0.05;
+
+/// The rotor of runs of one alone.
+fn single_rotor(
+    benches: &[Bench],
+    voltage: Option<&Voltage>,
+    reference_v: Option<f64>,
+    wishes: &FitOptions,
+    warnings: &mut Vec<String>,
+) -> Result<SingleRotor, Refusal> {
+    // Thrust and torque follow the speed alike: the exponent of the one stands in for the other's.
+    let brought = voltage.and_then(|voltage| {
+        let thrust = voltage.thrust.value()?;
+        Some((voltage, [thrust, voltage.torque.value().unwrap_or(thrust)]))
+    });
+    let bench = Bench {
+        file: names(benches),
+        points: benches.iter().flat_map(|bench| bench.points.clone()).collect(),
+        ..benches[0].clone()
     };
-    Err(Refusal::of(
-        files,
-        format!("one throttle only, so there is no map of a pair; and {why}"),
-        format!("{for_pair}; for [voltage]: {needed}"),
-    ))
+    let known = RunFacts {
+        exponents: brought.map_or([0.0; 2], |(_, exponents)| exponents),
+        reference_v: reference_v.filter(|_| brought.is_some()),
+        ..wishes.run
+    };
+    let run = Single::of(&bench, &known, warnings)?;
+    let freedom = run.points as f64 / (run.points - 3) as f64;
+    let deviation = |k: usize| {
+        let own = run.misfit_percent[k].unwrap_or(UNMEASURED_TORQUE);
+        let law = brought
+            .zip(run.run_v.zip(run.voltage_v))
+            .map_or(0.0, |((voltage, _), (from, to))| {
+                by_voltage([&voltage.thrust, &voltage.torque][k].deviation(), from, to)
+            });
+        (own * own * freedom + law * law).sqrt()
+    };
+    Ok(SingleRotor {
+        name: wishes.name.clone().unwrap_or_else(|| "rotor".to_owned()),
+        curves: Out::of(run.rotor, 1.0),
+        throttle: wishes.throttle.unwrap_or(ThrottleBox {
+            min: run.measured[0].max(LEAST_IDLE),
+            max: run.end(),
+        }),
+        uncertainty: Uncertainty::rounded(deviation(0), deviation(1)),
+        run,
+    })
 }
 
 /// Sag of the supply within one map, as a share of its highest voltage, above which it matters how

@@ -4,7 +4,7 @@ use mixer_compiler::atmosphere::altitude_of;
 use mixer_compiler::model::PairMap;
 
 use super::air::{Air, THIN_M};
-use super::bench::{Bench, BenchKind};
+use super::bench::{Bench, BenchKind, equal_commands};
 use super::fit::Fit;
 use super::fit::pair::Pair;
 use super::fit::pair::drift::Shown;
@@ -94,6 +94,19 @@ pub fn of_identified(identified: &Identified) -> Vec<Statement> {
     }
     if let Some(pair) = &identified.pair {
         of_pair(&mut statements, pair);
+    }
+    if let Some(rotor) = &identified.rotor {
+        statements.table = "rotor";
+        let (run, [from, to], of) = (&rotor.run, rotor.run.measured, rotor.uncertainty);
+        let text = format!(
+            "{} points, throttle {from:.2} to {to:.2}, within {} % of the largest thrust and {} % of the largest torque; \
+             cargo mixer predict makes a pair of it; if this signal drives both rotors, {}",
+            run.points,
+            of.thrust_percent,
+            of.torque_percent,
+            equal_commands(&[&run.file])
+        );
+        statements.always("single rotor", text);
     }
     statements.table = "voltage";
     match &identified.voltage {

@@ -1,6 +1,7 @@
 //! Tables of an airframe file, as `toml_edit` has them.
 
-use toml_edit::{Array, Item, Table, Value};
+use mixer_compiler::airframe::Uncertainty;
+use toml_edit::{Array, Item, Table, Value, value};
 
 /// A table with a comment above it, lines with their ends.
 pub(crate) fn table<'a>(comment: &str, entries: impl IntoIterator<Item = (&'a str, Item)>) -> Item {
@@ -10,6 +11,18 @@ pub(crate) fn table<'a>(comment: &str, entries: impl IntoIterator<Item = (&'a st
         table.insert(key, value);
     }
     Item::Table(table)
+}
+
+/// `[pair.uncertainty]`.
+pub(crate) fn uncertainty(of: &Uncertainty) -> Item {
+    let mut entries = vec![
+        ("thrust_percent", value(of.thrust_percent)),
+        ("torque_percent", value(of.torque_percent)),
+    ];
+    if of.is_predicted {
+        entries.push(("source", value("prediction")));
+    }
+    table("# One standard deviation, % of full scale.\n", entries)
 }
 
 /// Numbers in one line.

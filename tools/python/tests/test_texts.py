@@ -155,7 +155,7 @@ def test_a_text_is_compiled_as_its_file():
     (lambda x8: x8.wrench([0.5] * 8, volts=9), "voltage_v 9.0 is outside the airframe's range"),
     (lambda x8: coaxial_mixer.identify(), "BENCH.csv"),
     (lambda x8: coaxial_mixer.identify("a.csv", kapa=1), "a similar argument exists: '--kappa'"),
-    (lambda x8: coaxial_mixer.identify("a.csv", kappa=0.02), "belongs to --prior"),
+    (lambda x8: coaxial_mixer.identify(SWEEP, kappa=0.02), "or to --prior"),
     (lambda x8: coaxial_mixer.identify("a.csv", output="b.toml"), "output: nothing is written"),
     (lambda x8: coaxial_mixer.identify(SWEEP, frame="x8"), "arm"),
     (lambda x8: coaxial_mixer.predict("a.csv", spacing=0.08), "--diameter"),

@@ -121,6 +121,12 @@ impl IdentifyArgs {
                 voltage_exponent: self.voltage_exponent,
                 closed_loop: self.reading.rpm_at_full.is_some(),
                 pack_v: self.pack.range_v(),
+                run: self.rotors.known(None, [0.0; 2]),
+                name: self
+                    .place
+                    .output
+                    .as_ref()
+                    .and_then(|path| Some(path.file_stem()?.to_str()?.to_owned())),
             },
             ..settings
         }
@@ -142,11 +148,6 @@ impl IdentifyArgs {
     /// # Errors
     /// Arguments that do not fit together, files that cannot serve.
     pub fn answer(&self, reader: Reader<'_>) -> Result<(Outcome<()>, Vec<String>), NoAnswer> {
-        if self.prior.is_none() && self.rotors.is_given() {
-            let message =
-                "what is known of one rotor alone belongs to --prior SINGLE.csv, which is not given";
-            return Err(NoAnswer::Usage(message));
-        }
         let maps = self.files.iter().map(|path| reader(path)).collect::<Vec<_>>();
         let runs = [&self.prior, &self.lower_out, &self.upper_out];
         let [prior, upper, lower] = runs.map(|run| run.as_deref().map(reader));
@@ -167,6 +168,10 @@ impl IdentifyArgs {
         }
         let answer =
             identify(&maps, [upper.as_ref(), lower.as_ref()], &settings).map_err(NoAnswer::Refused)?;
+        if self.rotors.is_given() && (answer.found.rotor.is_none() || self.rotors.is_of_pair()) {
+            let message = "what is known of one rotor alone belongs to its run, or to --prior SINGLE.csv, which is not given";
+            return Err(NoAnswer::Usage(message));
+        }
         let refused_rows = answer.found.files.iter().flat_map(|file| &file.refused_rows);
         let most = MOST_ROWS[usize::from(self.verbose)];
         let notes = refusal_notes(refused_rows, most);

@@ -150,8 +150,13 @@ impl RotorArgs {
 
     /// Whether anything is given.
     pub(crate) fn is_given(&self) -> bool {
-        let numbers = [self.ratio(), self.diameter, self.kappa, self.run_voltage];
-        self.lower_single.is_some() || numbers.iter().any(Option::is_some)
+        let numbers = [self.diameter, self.kappa, self.run_voltage];
+        self.is_of_pair() || numbers.iter().any(Option::is_some)
+    }
+
+    /// Whether anything is that takes two rotors.
+    pub(crate) fn is_of_pair(&self) -> bool {
+        self.lower_single.is_some() || self.ratio().is_some()
     }
 }
 

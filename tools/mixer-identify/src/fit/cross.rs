@@ -10,14 +10,13 @@
 
 use std::collections::BTreeSet;
 
-use mixer_compiler::airframe::Basis;
+use mixer_compiler::airframe::{Basis, Uncertainty};
 use mixer_compiler::model::injectivity::EnclosedPairMap;
 use serde::Serialize;
 
 use crate::fit::basis::ThrottleBox;
 use crate::fit::fold;
 use crate::fit::polynomial::Polynomial;
-use crate::fit::uncertainty::Uncertainty;
 use crate::fit::{Deficient, Design, leave_one_out};
 
 /// One line of the table.

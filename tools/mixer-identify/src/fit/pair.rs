@@ -1,6 +1,6 @@
 //! The map of a pair from bench points: choice of the basis, fit, outliers, fold.
 
-use mixer_compiler::airframe::Basis;
+use mixer_compiler::airframe::{Basis, Uncertainty, by_voltage};
 use mixer_compiler::model::injectivity::EnclosedPairMap;
 use serde::Serialize;
 
@@ -12,7 +12,6 @@ use crate::fit::basis::ThrottleBox;
 use crate::fit::cross::{self, Candidate};
 use crate::fit::fold::{self, CLEAR, Fold};
 use crate::fit::robust::{self, Outlier};
-use crate::fit::uncertainty::{Uncertainty, by_voltage};
 use crate::fit::voltage::Voltage;
 use crate::fit::wishes::FitOptions;
 use crate::fit::{Deficient, Design, Fit, fit, range};
@@ -85,7 +84,7 @@ pub(crate) fn identify(
     anomalies: &[Anomaly],
 ) -> Result<Pair, Refusal> {
     let benches: Vec<&Bench> = benches.iter().filter(|b| b.kind == BenchKind::Pair).collect();
-    let files = names(&benches);
+    let files = names(benches.iter().copied());
     let mut warnings = Vec::new();
     let (mut points, normalised_to_v) = at_reference(&benches, voltage, wishes)?;
     let measured = range(&places(&points));
@@ -170,8 +169,9 @@ pub(crate) fn identify(
     })
 }
 
-fn names(benches: &[&Bench]) -> String {
-    let names: Vec<&str> = benches.iter().map(|b| b.file.as_str()).collect();
+/// The files, by their names.
+pub(crate) fn names<'a>(benches: impl IntoIterator<Item = &'a Bench>) -> String {
+    let names: Vec<&str> = benches.into_iter().map(|b| b.file.as_str()).collect();
     names.join(", ")
 }
 

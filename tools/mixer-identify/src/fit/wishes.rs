@@ -3,6 +3,7 @@
 use mixer_compiler::airframe::Basis;
 
 use crate::fit::basis::ThrottleBox;
+use crate::rotor::single::RunFacts;
 
 /// What the user decides about the fit.
 #[derive(Debug, Clone, Default)]
@@ -21,4 +22,8 @@ pub struct FitOptions {
     pub closed_loop: bool,
     /// Voltage of the empty and of the full pack, V, or nothing for what the bench had.
     pub pack_v: Option<[f64; 2]>,
+    /// What is known of the run of one rotor beside its file.
+    pub run: RunFacts,
+    /// The name of that rotor.
+    pub name: Option<String>,
 }

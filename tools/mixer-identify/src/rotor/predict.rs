@@ -6,27 +6,28 @@
 //! `[pair.lower_out]`, `[pair.upper_out]`.
 
 use mixer_compiler::Source;
-use mixer_compiler::airframe::Basis;
+use mixer_compiler::airframe::{Basis, EXPONENT_DEVIATION, Uncertainty, by_voltage};
 use mixer_compiler::model::injectivity::EnclosedPairMap;
 use serde::Serialize;
-use toml_edit::{DocumentMut, value};
+use toml_edit::DocumentMut;
 
 use crate::air::Air;
 use crate::bench::{Bench, BenchKind, is_one_signal, mean_voltage};
 use crate::fit::balance::throttles;
 use crate::fit::basis::ThrottleBox;
 use crate::fit::fold::{CLEAR, lower_ends};
-use crate::fit::uncertainty::{EXPONENT_DEVIATION, Uncertainty, by_voltage};
 use crate::fit::{Design, ten_digits};
+use crate::fragment::{model, pair};
 use crate::identified::{bench_range, in_pack};
 use crate::refusal::Refusal;
+use crate::rotor::Turning;
 use crate::rotor::agreement::agreed;
 use crate::rotor::curve::Rotor;
 use crate::rotor::interaction::{CLOSED_LOOP, Interaction, OPEN_LOOP};
 use crate::rotor::posterior::{BETWEEN_SYSTEMS, Case, Posterior, ROW, fit, scaled};
 use crate::rotor::single::{Single, exponents_in_words};
 use crate::statistics::{greatest, rms};
-use crate::table::{commented, numbers, table};
+use crate::table::commented;
 
 /// z/D where the user does not say: spacing matters little (docs/no-bench.md).
 pub const SPACING_RATIO: f64 = 0.25;
@@ -55,7 +56,9 @@ pub const ENOUGH_ROWS: usize = 16;
 /// that the project can measure.
 const PREDICTED: [f64; 2] = [1.5, 3.7];
 const FEW_ROWS: [f64; 2] = [1.5, 2.4];
-const WITHOUT_TORQUE: [f64; 2] = [0.0, 2.0];
+const WITHOUT_TORQUE: [f64; 2] = [0.0, UNMEASURED_TORQUE];
+/// A torque that was not measured, % of full scale.
+pub(crate) const UNMEASURED_TORQUE: f64 = 2.0;
 /// Rows with torque that a correction of it takes.
 const CORRECTING_ROWS: usize = 4;
 
@@ -390,10 +393,9 @@ fn uncertainty(
         let learned = (squares.sum::<f64>() - row * row) * narrowed * narrowed;
         ((own * own + learned) * found.misfit.max(1.0)).sqrt()
     };
-    Uncertainty {
-        is_predicted: true,
-        ..Uncertainty::rounded(percent(0), percent(1))
-    }
+    let mut found = Uncertainty::rounded(percent(0), percent(1));
+    found.is_predicted = true;
+    found
 }
 
 /// The cubic of the map over the box, or the refusal with the box in which there is one.
@@ -431,10 +433,6 @@ fn at_an_idle(
     wished: ThrottleBox,
 ) -> Option<PredictedPair> {
     let basis = Basis::Cubic;
-    let out = |rotor: Rotor, sign: f64| Out {
-        thrust_n: rotor.thrust.0.map(ten_digits),
-        torque_nm: rotor.torque.0.map(|c| ten_digits(sign * c)),
-    };
     let idles = (0..).map(|step| (1e4 * (wished.min + 0.01 * f64::from(step))).round() / 1e4);
     for min in idles.take_while(|min| *min <= MOST_IDLE.max(wished.min)) {
         let throttle = ThrottleBox { min, ..wished };
@@ -466,8 +464,8 @@ fn at_an_idle(
             lower_is_stronger: false,
             throttle,
             min_idle: throttle.min,
-            lower_out: out(upper, -1.0),
-            upper_out: out(lower, 1.0),
+            lower_out: Out::of(upper, -1.0),
+            upper_out: Out::of(lower, 1.0),
             uncertainty,
             misfit_percent: [f, q].map(ten_digits),
         };
@@ -483,42 +481,47 @@ fn one_pair(pair: &PredictedPair) -> String {
     format!(
         "name = \"predicted\"\n{}[[unit]]\nposition_m = [0.0, 0.0, 0.0]\nupper_spin = \"cw\"\nchannels = [0, 1]\n\
          [allocation]\naxes = [\"yaw\", \"thrust\"]\n",
-        pair.tables(&|_| String::new())
+        pair.tables(&|_| String::new(), &[])
     )
+}
+
+impl Out {
+    /// Thrust and torque.
+    pub(crate) fn both(self) -> [[f64; 3]; 2] {
+        [self.thrust_n, self.torque_nm]
+    }
+
+    /// Of a rotor with this sign of its torque, in ten digits.
+    pub(crate) fn of(rotor: Rotor, sign: f64) -> Out {
+        Out {
+            thrust_n: rotor.thrust.0.map(ten_digits),
+            torque_nm: rotor.torque.0.map(|c| ten_digits(sign * c)),
+        }
+    }
 }
 
 impl PredictedPair {
     /// `[throttle]` and `[pair]`, with what stands above a table by its name.
-    pub(crate) fn tables(&self, about: &dyn Fn(&str) -> String) -> DocumentMut {
-        let curves = |name: &str, out: Out| {
-            let curves = [
-                ("thrust_n", numbers(out.thrust_n)),
-                ("torque_nm", numbers(out.torque_nm)),
-            ];
-            table(&about(name), curves)
-        };
-        let pair = [
-            ("basis", value(self.basis.name())),
-            ("thrust_n", commented(&self.thrust_n, self.terms.iter().cloned())),
-            (
-                "torque_nm",
-                commented(&self.torque_nm, self.terms.iter().cloned()),
-            ),
-            ("upper_spin", value(self.upper_spin)),
-            ("lower_out", curves("pair.lower_out", self.lower_out)),
-            ("upper_out", curves("pair.upper_out", self.upper_out)),
-            ("uncertainty", self.uncertainty.table()),
+    pub(crate) fn tables(&self, about: &dyn Fn(&str) -> String, options: &[String]) -> DocumentMut {
+        let terms = [&self.thrust_n, &self.torque_nm].map(|of| commented(of, self.terms.iter().cloned()));
+        let alone = [
+            (Turning::Upper, self.lower_out.both()),
+            (Turning::Lower, self.upper_out.both()),
         ];
-        let limits = [
-            ("min", value(self.throttle.min)),
-            ("max", value(self.throttle.max)),
-        ];
-        let mut document = DocumentMut::new();
-        document.insert("throttle", table(&about("throttle"), limits));
-        document.insert("pair", table(&about("pair"), pair));
-        if self.lower_is_stronger {
-            document["pair"]["stronger"] = value("lower");
-        }
-        document
+        let entries = pair(
+            about,
+            self.basis,
+            terms,
+            self.lower_is_stronger,
+            alone.into_iter(),
+        );
+        model(
+            about,
+            self.throttle,
+            "pair",
+            entries,
+            Some(&self.uncertainty),
+            options,
+        )
     }
 }

@@ -95,10 +95,16 @@ fn thrust_alone_leaves_the_table_to_be_completed() {
         .expect("a bench")
     };
     let single = vec![file("s1.csv", 12.0), file("s2.csv", 16.0)];
-    let alone = from_benches(single.clone(), &settings(None).wishes).expect("an exponent");
-    let table: toml::Table = fragment::text(&alone).parse().expect("TOML");
-    assert_eq!(table["voltage"]["thrust_exponent"].as_float(), Some(1.7));
-    assert!(table["voltage"].get("torque_exponent").is_none() && table.get("pair").is_none());
+    let mut wishes = settings(None).wishes;
+    wishes.run.diameter_m = Some(0.28);
+    let alone = from_benches(single.clone(), &wishes).expect("a rotor");
+    let text = fragment::text(&alone);
+    let table: toml::Table = text.parse().expect("TOML");
+    let thrust = &table["rotor"][0]["thrust_n"];
+    let full: f64 = (0..3).map(|k| thrust[k].as_float().unwrap()).sum();
+    let reference = alone.reference_v.expect("a reference");
+    assert!((full / (9.0 * libm::pow(reference / 14.8, 1.7)) - 1.0).abs() < 1e-3, "{text}");
+    assert!(!table.contains_key("voltage") && text.contains("# thrust_exponent = 1.7"), "{text}");
 
     // Beside a pair an incomplete table would make the airframe invalid.
     let files = [vec![map("a.csv", 14.8, 0.0, 1)], single].concat();

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::fit::uncertainty::EXPONENT_DEVIATION;
+use mixer_compiler::airframe::EXPONENT_DEVIATION;
 
 /// An exponent, or why there is none.
 #[derive(Debug, Clone, Serialize)]
