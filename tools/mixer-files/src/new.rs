@@ -45,43 +45,51 @@ pub fn new(frame: &NewFrame<'_>, pair: Option<&Source>) -> Result<String, Error>
     Ok(printable_lines(&text))
 }
 
-/// The same with several pairs by name. Units in front have `front`, those behind `rear`, right and left ones `right` and
-/// `left`; other names go round the frame.
+/// Names of pairs that are places.
+pub const PLACES: [&str; 4] = ["front", "rear", "left", "right"];
+
+/// The same with several pairs by name. [`PLACES`], in any case of letters, are those of the units there, and the frame does
+/// not depend on their order; other names go round the frame.
 ///
 /// # Errors
-/// As [`new`]; a frame of fewer units, ranges of throttle that have nothing in common.
+/// As [`new`]; a name that is no place beside one that is, ranges of throttle that have nothing in common, a law of the
+/// voltage or the air that one file has and another has not.
 pub fn new_unlike(frame: &NewFrame<'_>, pairs: &[(String, Source)]) -> Result<String, Error> {
-    let read = |(name, file): &(String, Source)| Ok((name.clone(), PairFile::read(&file.name, &file.text)?));
-    let files: Vec<(String, PairFile)> = pairs
-        .iter()
-        .map(read)
-        .collect::<Result<_, _>>()
-        .map_err(Error::Pair)?;
-    let angles = frame.angles_deg();
-    if angles.len() < files.len() {
-        let (units, pairs) = (angles.len(), files.len());
+    let place = |name: &str| PLACES.iter().position(|place| place.eq_ignore_ascii_case(name));
+    let mut files = Vec::new();
+    for (name, file) in pairs {
+        let name = place(name).map_or(name.as_str(), |place| PLACES[place]);
+        let read = PairFile::read(&file.name, &file.text).map_err(Error::Pair)?;
+        files.push((name, &file.name, read));
+    }
+    files.sort_by_key(|(name, ..)| place(name));
+    let is_placed = files.iter().any(|(name, ..)| place(name).is_some());
+    if let Some((name, ..)) = files.iter().find(|(name, ..)| is_placed && place(name).is_none()) {
+        let places = PLACES.join(", ");
         return Err(Error::Frame(format!(
-            "--pair: {pairs} pairs, and the frame has {units} units"
+            "--pair {name}: places are {places}; other names go round the frame"
         )));
     }
-    let named = |wanted: &str| {
-        files
-            .iter()
-            .any(|(name, _)| name == wanted)
-            .then(|| wanted.to_owned())
-    };
-    let place = |(k, angle): (usize, f64)| {
+    let angles = frame.angles_deg();
+    let mut names = Vec::new();
+    for (k, angle) in angles.into_iter().enumerate() {
         let (sin, cos) = (libm::sin(angle.to_radians()), libm::cos(angle.to_radians()));
         let along = if cos > 1e-9 { "front" } else { "rear" };
         let across = if sin > 1e-9 { "right" } else { "left" };
-        named(along)
-            .or(named(across))
-            .unwrap_or_else(|| files[k % files.len()].0.clone())
-    };
+        let mut of_place = [along, across].into_iter();
+        let name = match is_placed {
+            // The compiler tells of a place without a pair.
+            true => of_place
+                .find(|place| files.iter().any(|(name, ..)| name == place))
+                .unwrap_or(along),
+            false => files[k % files.len()].0,
+        };
+        names.push(name.to_owned());
+    }
     let range = |key: &'static str| {
         files
             .iter()
-            .filter_map(move |(_, file)| file.number("throttle", key))
+            .filter_map(move |(.., file)| file.number("throttle", key))
     };
     let [min, max] = [range("min").fold(0.0, f64::max), range("max").fold(1.0, f64::min)];
     if min >= max {
@@ -92,21 +100,28 @@ pub fn new_unlike(frame: &NewFrame<'_>, pairs: &[(String, Source)]) -> Result<St
     let mut tables = format!(
         "[throttle]                             # what all pairs have\nmin = {min:?}\nmax = {max:?}\n\n"
     );
-    for (name, file) in &files {
+    // The law of the first file is the frame's; a pair of another takes its own along.
+    for (table, mend) in [
+        ("voltage", "--voltage-exponent 1.75 --cells N"),
+        ("air", "--temperature C --pressure HPA"),
+    ] {
+        let one = |has: bool| files.iter().find(|(.., file)| file.has(table) == has);
+        if let [Some((_, with, _)), Some((_, without, _))] = [true, false].map(one) {
+            return Err(Error::Pair(format!(
+                "{without}: no [{table}], and {with} has one: identify it again with {mend}, which writes it"
+            )));
+        }
+        let (first, others) = files.split_at_mut(1);
+        others
+            .iter_mut()
+            .for_each(|(.., file)| file.take_along(table, &first[0].2));
+    }
+    for (name, _, file) in &files {
         tables += &file.named(name);
     }
-    // One law for all: that of the first file that has one.
-    for table in ["voltage", "air"] {
-        let mut with = files.iter().filter(|(_, file)| file.has(table));
-        if let Some((name, file)) = with.next() {
-            tables += &format!(
-                "# [{table}] of \"{name}\": one law is for all pairs\n{}",
-                file.tables(&[table]).0
-            );
-        }
-    }
+    tables += &files[0].2.tables(&["voltage", "air"]).0;
     let frame = NewFrame {
-        pairs: angles.into_iter().enumerate().map(place).collect(),
+        pairs: names,
         ..frame.clone()
     };
     let text = frame.airframe(&tables, None).map_err(Error::Frame)?;

@@ -47,6 +47,7 @@ impl PairFile {
         if let Some(pair) = file.0.get_mut("pair").and_then(Item::as_table_like_mut) {
             pair.remove("name");
         }
+        file.0.set_trailing("");
         let (table, _) = file.tables(&["pair"]);
         let name = format!("name = {}\n", toml_edit::Value::from(name));
         let lines = table
@@ -56,6 +57,17 @@ impl PairFile {
                 None => line.to_owned(),
             });
         lines.collect()
+    }
+
+    /// Moves a table into `[pair]`, unless the first file of a frame has the same.
+    pub fn take_along(&mut self, table: &str, first: &PairFile) {
+        let own = self
+            .0
+            .remove(table)
+            .filter(|own| Some(own.to_string()) != first.0.get(table).map(Item::to_string));
+        if let (Some(own), Some(pair)) = (own, self.0["pair"].as_table_like_mut()) {
+            pair.entry(table).or_insert(own);
+        }
     }
 
     /// Whether it has this table.

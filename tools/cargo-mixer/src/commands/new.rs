@@ -3,10 +3,12 @@
 use std::path::PathBuf;
 
 use mixer_compiler::Source;
+use mixer_compiler::airframe::Airframe;
+use mixer_facts::checklist;
 use mixer_files::new::{Error, new, new_unlike};
 
 use crate::frame_args::FrameArgs;
-use crate::{Done, airframe_file, bad_usage, file, print_error};
+use crate::{Done, airframe_file, bad_usage, file, print_error, print_note};
 
 /// Writes a complete, commented airframe file of a regular frame
 ///
@@ -16,7 +18,8 @@ use crate::{Done, airframe_file, bad_usage, file, print_error};
 pub struct NewArgs {
     #[command(flatten)]
     frame: FrameArgs,
-    /// The pair's model: what `cargo mixer identify -o` writes, or another airframe's; NAME=PAIR.toml for each of several
+    /// The pair's model: what `cargo mixer identify -o` writes, or another airframe's; NAME=PAIR.toml for each of several, by
+    /// place, front, rear, left or right, or with names of your own, which go round the frame clockwise
     #[arg(long, value_name = "PAIR.toml")]
     pub pair: Vec<PathBuf>,
     /// The airframe file to write
@@ -77,5 +80,9 @@ pub fn run(args: &NewArgs) -> Done {
         Error::Pair(message) => print_error(message),
         Error::Frame(message) => bad_usage(message),
     })?;
-    airframe_file::write(&args.output, &text, pairs.first().map(|(_, path)| path.as_path()))
+    airframe_file::write(&args.output, &text, pairs.first().map(|(_, path)| path.as_path()))?;
+    let airframe = Airframe::read(&Source::new("new.toml", text)).ok();
+    let unlike = airframe.filter(Airframe::is_unlike);
+    unlike.iter().flat_map(checklist::frame).for_each(print_note);
+    Ok(())
 }
