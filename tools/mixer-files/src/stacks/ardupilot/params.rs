@@ -125,8 +125,8 @@ fn geometry(compiled: &Compiled, options: &Options, all: &mut Parameters) -> Res
     }
     let Some((class, kind, name)) = frames::find(compiled) else {
         all.note(
-            "no FRAME_CLASS with pairs has these rotors on these outputs: ArduPilot has X and plus frames of 4 and 6 pairs, Y6 and Y4; of \
-             those `cargo mixer new --outputs ardupilot` writes an airframe whose `channels` and spins are one's",
+            "FRAME_CLASS is missing: of ArduPilot's frames X and plus of 4 and 6 pairs, Y6 and Y4 are known here, and none has these \
+             rotors on these outputs; `cargo mixer new --outputs ardupilot` writes those of pairs",
         );
         return Ok(());
     };
