@@ -36,7 +36,7 @@
 use crate::allocate::closed_form::AllocationMethod;
 use crate::allocate::unit::UnitState;
 use crate::layout::Tables;
-use crate::mix::mix_into;
+use crate::mix::{by_channel, mix_into};
 use crate::pair::alone::LEAST_RISE;
 use crate::pair::rotors::Rotors;
 use crate::pair::{Kinds, Quantity};
@@ -85,14 +85,6 @@ const LONGEST_S: f32 = 100.0;
 /// negative.
 const NEXT_TO_NOTHING: f32 = 0.1;
 
-/// What `mix` gives a unit.
-#[derive(Clone, Copy)]
-struct Steady {
-    rotors: Rotors,
-    throttles: [f32; 2],
-    thrust_n: f32,
-}
-
 /// [`mix`](crate::tables::mix), its throttles changed so that the thrust of every unit follows while rotors change their
 /// speeds. `lags` are those of the kinds. `held_s` is the time, s, that the throttles will be held, which moves `state` on:
 /// negative and NaN are 0, and a longer one than 100 s is 100 s. `achieved` and `saturation` are those of `mix`: what
@@ -118,26 +110,21 @@ pub fn mix_dynamic<
     health: Health,
     held_s: f32,
 ) -> Result<Mix<CHANNELS>, SetpointError> {
-    // Known zeros would be written by a call of memset, which a bare-metal target may not have.
-    let zero = core::hint::black_box(0.0);
-    let mut steady = [Steady {
-        rotors: Rotors::BOTH,
-        throttles: [zero; 2],
-        thrust_n: zero,
-    }; UNITS];
-    let states = || [UnitState::default(); UNITS];
-    let mut take = |unit: usize, _: [u8; 2], rotors, throttles, thrust_n| {
-        if let Some(slot) = steady.get_mut(unit) {
-            *slot = Steady {
-                rotors,
-                throttles,
-                thrust_n,
-            };
-        }
-    };
-    let (achieved, saturation) = mix_into(tables, setpoint, conditions, health, states, &mut take)?;
     let mut throttle = [tables.throttle.min; CHANNELS];
-    follow::<CHANNELS, HEALTH, _, _>(tables, lags, &steady, state, &mut throttle, held_s);
+    // Known zeros would be written by a call of memset, which a bare-metal target may not have.
+    let mut thrust_n = [core::hint::black_box(0.0); UNITS];
+    let states = || [UnitState::default(); UNITS];
+    let (achieved, saturation) = {
+        let mut by_channel = by_channel(&mut throttle);
+        let mut take = |unit: usize, channels, rotors, throttles, of_unit_n| {
+            by_channel(unit, channels, rotors, throttles, of_unit_n);
+            if let Some(slot) = thrust_n.get_mut(unit) {
+                *slot = of_unit_n;
+            }
+        };
+        mix_into(tables, setpoint, conditions, health, states, &mut take)?
+    };
+    follow::<CHANNELS, HEALTH, _, _>(tables, lags, &thrust_n, health, state, &mut throttle, held_s);
     Ok(Mix {
         throttle,
         achieved,
@@ -155,16 +142,30 @@ pub fn follow_given<const CHANNELS: usize, K: Kinds, S>(
     given: &[f32; CHANNELS],
     held_s: f32,
 ) {
+    let half_s = half_of(held_s);
     for unit in rolled(tables.units) {
         for channel in unit.channels.map(usize::from) {
             let lag = lags.get(usize::from(unit.kind));
             if let (Some(lag), Some(worth), Some(given)) =
                 (lag, state.worth.get_mut(channel), given.get(channel))
             {
-                *worth = Rotor::new(lag, *worth, held_s).after(clamp(*given, 0.0, 1.0));
+                let rotor = Rotor::new(lag, within(*worth), half_s, 0.0);
+                *worth = rotor.after(rotor.acting(clamp(*given, 0.0, 1.0)));
             }
         }
     }
+}
+
+/// Half of the time, s, that throttles are held.
+#[inline(always)]
+fn half_of(held_s: f32) -> f32 {
+    0.5 * clamp(held_s, 0.0, LONGEST_S)
+}
+
+/// A worth as one that a rotor can have.
+#[inline(always)]
+fn within(worth: f32) -> f32 {
+    crate::arithmetic::Scalar::within_positive(worth, 0.0, 1.0)
 }
 
 /// A rotor under way.
@@ -175,101 +176,135 @@ struct Rotor {
     rate: f32,
     /// Share of the way to the throttle that is done in half of the time.
     half_way: f32,
-    /// The least throttle that acts.
-    coasting: f32,
+    /// The least throttle that acts, or that is given.
+    least: f32,
+    /// Whether the first may be above the second.
+    coasts: bool,
 }
 
 impl Rotor {
+    /// A rotor that is given at least a throttle `least`.
     #[inline(always)]
-    fn new(lag: &Lag, worth: f32, held_s: f32) -> Rotor {
-        let worth = crate::arithmetic::Scalar::within_positive(worth, 0.0, 1.0);
+    fn new(lag: &Lag, worth: f32, half_s: f32, least: f32) -> Rotor {
         let rate = sqrt(lag.base + lag.rise * worth);
-        let half = 0.5 * clamp(held_s, 0.0, LONGEST_S) * rate;
-        // 1 - exp(-x) as 1 - 1 / (1 + x + x^2/2 + x^3/6): within x^4/24, and 1 at last.
-        let grown = half * (1.0 + half * (0.5 + half * (1.0 / 6.0)));
+        let half = half_s * rate;
+        // 1 - exp(-x) as 1 - 1 / (1 + x + x^2/2): within x^3/6, and 1 at last.
+        let grown = half * (1.0 + 0.5 * half);
         Rotor {
             worth,
             rate,
             half_way: divided(grown, 1.0 + grown),
-            coasting: lag.coast.map_or(0.0, |[a, b]| a * rate - b),
+            least: lag.coast.map_or(least, |[a, b]| larger(a * rate - b, least)),
+            coasts: lag.coast.is_some(),
         }
     }
 
-    /// The worth in the middle of the time, at a throttle.
+    /// The throttle that acts where one is given.
     #[inline(always)]
-    fn middle(&self, throttle: f32) -> f32 {
-        self.worth + self.half_way * (larger(throttle, self.coasting) - self.worth)
+    fn acting(&self, throttle: f32) -> f32 {
+        if self.coasts {
+            larger(throttle, self.least)
+        } else {
+            throttle
+        }
     }
 
-    /// The worth at the end of the time, at a throttle.
+    /// The worth in the middle of the time, at a throttle that acts.
+    #[inline(always)]
+    fn middle(&self, throttle: f32) -> f32 {
+        self.worth + self.half_way * (throttle - self.worth)
+    }
+
+    /// The worth at the end of the time, at a throttle that acts.
     #[inline(always)]
     fn after(&self, throttle: f32) -> f32 {
         let way = self.half_way * (2.0 - self.half_way);
-        self.worth + way * (larger(throttle, self.coasting) - self.worth)
+        self.worth + way * (throttle - self.worth)
     }
 }
 
-/// Writes each unit's throttles, and moves the state on.
+/// Whether `low <= x <= high`, of positive ones: they are ordered as their bits are, and what is negative or NaN is above all.
+#[inline(always)]
+fn is_between(x: f32, low: f32, high: f32) -> bool {
+    x.to_bits().wrapping_sub(low.to_bits()) <= high.to_bits().wrapping_sub(low.to_bits())
+}
+
+/// Shifts the throttles of `mix`, with which the units give `thrust_n`, and moves the state on.
 #[inline(never)]
 fn follow<const CHANNELS: usize, const HEALTH: bool, K: Kinds, S>(
     tables: &Tables<'_, K, S>,
     lags: &[Lag],
-    steady: &[Steady],
+    thrust_n: &[f32],
+    health: Health,
     state: &mut RotorState<CHANNELS>,
     throttle: &mut [f32; CHANNELS],
     held_s: f32,
 ) {
-    for (index, (unit, steady)) in rolled(tables.units.iter().zip(steady).enumerate()) {
+    let half_s = half_of(held_s);
+    let range = &tables.throttle;
+    for (index, (unit, thrust_n)) in rolled(tables.units.iter().zip(thrust_n).enumerate()) {
         let Some(lag) = lags.get(usize::from(unit.kind)) else {
             continue;
         };
-        let steady = Steady {
-            rotors: if HEALTH || K::MAY_BE_SINGLE {
-                steady.rotors
-            } else {
-                Rotors::BOTH
-            },
-            ..*steady
-        };
         let channels = unit.channels.map(usize::from);
-        let worth = channels.map(|channel| state.worth.get(channel).copied().unwrap_or(0.0));
-        let rotors = worth.map(|worth| Rotor::new(lag, worth, held_s));
-        let given = given(tables, index, &steady, &rotors);
+        let of = |all: &[f32; CHANNELS]| channels.map(|channel| all.get(channel).copied().unwrap_or(0.0));
+        let (steady, worth) = (of(throttle), of(&state.worth));
+        let health = if HEALTH { health } else { Health::GOOD };
+        let mut turning = Rotors::of(unit.channels, health);
+        if tables.is_single(index) {
+            turning = turning.without_lower();
+        }
+        let is_usual = turning.are_both() && worth.iter().all(|x| is_between(*x, range.min, range.max));
+        let worth = if is_usual { worth } else { worth.map(within) };
+        let rotors = [0, 1].map(|side| {
+            let least = if turning.turns(side) { range.min } else { 0.0 };
+            Rotor::new(lag, worth[side], half_s, least)
+        });
+        let is_starting = |side: usize| turning.turns(side) && worth[side] < 0.5 * range.min;
+        let given = if !is_usual && (is_starting(0) || is_starting(1) || turning.turning() == [false; 2]) {
+            steady
+        } else {
+            given(tables, index, turning, is_usual, &rotors, steady, *thrust_n)
+        };
         for side in 0..2 {
-            let channel = channels[side];
-            if let (Some(throttle), Some(worth)) = (throttle.get_mut(channel), state.worth.get_mut(channel)) {
-                *throttle = given[side];
-                *worth = rotors[side].after(given[side]);
+            if let (Some(throttle), Some(worth)) = (
+                throttle.get_mut(channels[side]),
+                state.worth.get_mut(channels[side]),
+            ) {
+                (*throttle, *worth) = (given[side], rotors[side].after(rotors[side].acting(given[side])));
             }
         }
     }
 }
 
-/// Throttles of a unit, by index, whose rotors are under way.
+/// Throttles of a unit, by index, whose rotors are under way: of those that turn. `is_usual` says that both do, within the range.
 #[inline(always)]
 fn given<K: Kinds, S>(
     tables: &Tables<'_, K, S>,
     unit: usize,
-    steady: &Steady,
+    turning: Rotors,
+    is_usual: bool,
     rotors: &[Rotor; 2],
+    steady: [f32; 2],
+    steady_n: f32,
 ) -> [f32; 2] {
     let range = &tables.throttle;
-    let turning = steady.rotors.turning();
-    let is_starting = |side: usize| turning[side] && rotors[side].worth < 0.5 * range.min;
-    if is_starting(0) || is_starting(1) || turning == [false; 2] {
-        return steady.throttles;
-    }
-    let middle = [0, 1].map(|side| range.clamp(rotors[side].middle(steady.throttles[side])));
-    let (thrust_n, slopes) = match tables.pair_of(unit).filter(|_| steady.rotors.are_both()) {
+    let middle = [0, 1].map(|side| rotors[side].middle(rotors[side].acting(steady[side])));
+    let middle = if is_usual {
+        middle
+    } else {
+        middle.map(|x| range.clamp(x))
+    };
+    let (thrust_n, slopes) = match tables.pair_of(unit).filter(|_| turning.are_both()) {
         Some(of) => {
             let [f, f_u, f_l, ..] = of.pair.thrust.expansion(middle[0], middle[1]);
             (f, [f_u, f_l])
         }
         None => {
-            let of = tables.expansion(unit, steady.rotors, middle);
+            let of = tables.expansion(unit, turning, middle);
             // What a rotor gives alone is known to rise where the file says it.
             let slope = |side: usize| {
-                if turning[side] {
+                if turning.turns(side) {
                     larger(of.slopes[side][0], LEAST_RISE)
                 } else {
                     0.0
@@ -280,27 +315,28 @@ fn given<K: Kinds, S>(
     };
     let weights = [0, 1].map(|side| slopes[side] * rotors[side].rate);
     let total = weights[0] + weights[1];
-    let by_steady =
-        weights[0] * (steady.throttles[0] - middle[0]) + weights[1] * (steady.throttles[1] - middle[1]);
-    let shift = divided(steady.thrust_n - thrust_n, slopes[0] + slopes[1]) - divided(by_steady, total);
-    let mut given = steady.throttles.map(|throttle| throttle + shift);
-    let within = |given: [f32; 2], side: usize| {
-        let least = larger(range.min, rotors[side].coasting);
-        if turning[side] {
-            clamp(given[side], least, range.max)
+    let by_steady = weights[0] * (steady[0] - middle[0]) + weights[1] * (steady[1] - middle[1]);
+    let shift = divided(steady_n - thrust_n, slopes[0] + slopes[1]) - divided(by_steady, total);
+    let mut given = steady.map(|throttle| throttle + shift);
+    if is_usual && (0..2).all(|side| is_between(given[side], rotors[side].least, range.max)) {
+        return given;
+    }
+    let limited = |given: [f32; 2], side: usize| {
+        if turning.turns(side) {
+            clamp(given[side], rotors[side].least, range.max)
         } else {
             0.0
         }
     };
     // At a limit a rotor's partner keeps the thrust, at the cost of yaw, as far as its slope allows.
     for side in 0..2 {
-        let limited = within(given, side);
-        let (over, own) = (given[side] - limited, weights[1 - side]);
+        let within = limited(given, side);
+        let (over, own) = (given[side] - within, weights[1 - side]);
         if over != 0.0 {
             let least = NEXT_TO_NOTHING * total;
             given[1 - side] += divided(over * weights[side] * own, own * own + least * least);
-            given[side] = limited;
+            given[side] = within;
         }
     }
-    [within(given, 0), within(given, 1)]
+    [limited(given, 0), limited(given, 1)]
 }
