@@ -20,6 +20,8 @@ use mixer_rt::tables::Lag;
 use serde::Serialize;
 
 use crate::airframe::{Airframe, GRAVITY, Kind};
+use crate::bounds::bisected;
+use crate::diagnostic::{Code, Diagnostic, rounded_up};
 use crate::flywheel::{Flywheel, exponent, ohmic_share};
 use crate::model::injectivity::EnclosedPairMap;
 use crate::model::polynomial::ThrottleBox;
@@ -54,7 +56,30 @@ pub struct Dynamics {
 
 impl Dynamics {
     /// Those of each kind of unit; `None` where the slopes are not proven positive for all.
-    pub(crate) fn of(airframe: &Airframe, most_n: f64) -> Option<Vec<Dynamics>> {
+    ///
+    /// # Errors
+    /// Such slopes where the file states a lag.
+    pub(crate) fn of(airframe: &Airframe, most_n: f64) -> Result<Option<Vec<Dynamics>>, Vec<Diagnostic>> {
+        let found = Dynamics::proven(airframe, most_n);
+        let vehicle = airframe.vehicle.as_ref();
+        if found.is_some() || vehicle.is_none_or(|vehicle| vehicle.rotor_lag_s.is_none()) {
+            return Ok(found);
+        }
+        let range = [airframe.throttle.min, airframe.throttle.max];
+        let is_proven = |min: f64| airframe.views().all(|view| slopes(&view, min).is_some());
+        let least = rounded_up(bisected(range, is_proven));
+        let help =
+            format!("leave the key out, as `mix` needs none; it is proven from throttle.min = {least} on");
+        Err(vec![airframe.diagnostic(
+            Code::RotorLag,
+            "vehicle.rotor_lag_s",
+            UNPROVEN,
+            "of no use without `mix_dynamic`",
+            help,
+        )])
+    }
+
+    fn proven(airframe: &Airframe, most_n: f64) -> Option<Vec<Dynamics>> {
         let maps = maps(airframe);
         let at = |thrust_n: f64| Some((equal_throttle(airframe, &maps, thrust_n)?, thrust_n / GRAVITY));
         let (throttle, mass_kg) = airframe.weight_n().and_then(at).or_else(|| at(0.5 * most_n))?;
@@ -66,18 +91,9 @@ impl Dynamics {
         let of_kind = |(view, rotor): (View<'_, Kind<'_>>, Option<Flywheel>)| {
             let lag_s = stated_s.or_else(|| Some(of_estimate * rotor?.lag_s()))?;
             let s = ohmic_share(exponent(&view), 1.0);
-            let root = |throttle: f64| ((1.0 - s) * (1.0 - s) + 4.0 * s * throttle).sqrt();
-            let time_s = lag_s * root(throttle);
+            let time_s = lag_s * root(s, throttle);
             let coast = [time_s, 1.0 - s].map(|factor| (factor * (1.0 - s) / (2.0 * s)) as f32);
-            // Below half of idle the mixer shifts nothing.
-            let ratio = root(view.throttle.max) / root(0.5 * view.throttle.min);
-            let (least_slope_n, shift_per_square) = EnclosedPairMap::of_kind(view.of).proven_slopes(
-                ratio,
-                ThrottleBox {
-                    low: view.throttle.min,
-                    high: view.throttle.max,
-                },
-            )?;
+            let (least_slope_n, shift_per_square) = slopes(&view, view.throttle.min)?;
             Some(Dynamics {
                 lag_s,
                 throttle,
@@ -96,4 +112,17 @@ impl Dynamics {
         let rotors = Flywheel::of_mass(airframe, mass_kg, inertia);
         airframe.views().zip(rotors).map(of_kind).collect()
     }
+}
+
+/// The root of 1/lag at a throttle, over t.
+fn root(s: f64, throttle: f64) -> f64 {
+    ((1.0 - s) * (1.0 - s) + 4.0 * s * throttle).sqrt()
+}
+
+/// The proof for a kind of unit from an idle on: the least slope, and the largest shift per square of the distance.
+fn slopes(view: &View<'_, Kind<'_>>, min: f64) -> Option<(f64, f64)> {
+    let (s, max) = (ohmic_share(exponent(view), 1.0), view.throttle.max);
+    // Below half of idle the mixer shifts nothing.
+    let ratio = root(s, max) / root(s, 0.5 * min);
+    EnclosedPairMap::of_kind(view.of).proven_slopes(ratio, ThrottleBox { low: min, high: max })
 }

@@ -99,7 +99,7 @@ fn compile_airframe(source: &Source, airframe: Airframe) -> Result<Compiled, Vec
         residual: selected.residual,
         certificate: selected.certificate,
     });
-    let dynamics = Dynamics::of(&model.airframe, thrust_range_n[1].into());
+    let dynamics = Dynamics::of(&model.airframe, thrust_range_n[1].into())?;
     tables.lags = dynamics.iter().flatten().map(|of| of.lag).collect();
     let compiled = Compiled {
         source: source.clone(),

@@ -14,7 +14,7 @@ keys! { TABLE = "[vehicle]":
         "Moment of inertia of one rotor with its motor's bell about its axis, kg m2, for simulators; estimated from the largest thrust without it."
         .refusing("not a propeller's inertia", "a propeller of 10 inch has about 0.00005 kg m2, one of 16 inch 0.0004, one of 28 inch 0.003");
     ROTOR_LAG "rotor_lag_s" = "0.06", ValueKind::Number(Range::Within(LAGS_S)),
-        "Lag of a rotor's speed in hover, s: the time in which it does 63 % of a small step of its throttle; by the inertia without it."
+        "Lag of a rotor's speed in hover, s, of all kinds of units: the time in which it does 63 % of a small step of its throttle; by the inertia without it."
         .refusing("not a rotor's lag", "seconds: 0.03 for propellers of 5 inch, 0.05 for 10 inch, 0.08 for 16 inch, 0.15 for 28 inch, about");
     ROTOR_BRAKES "rotor_brakes" = "false", ValueKind::Flag,
         "Whether the speed controllers brake a rotor that is to turn slower (\"damped light\", complementary PWM); true without it.";

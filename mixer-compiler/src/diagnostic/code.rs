@@ -122,6 +122,8 @@ catalogue! {
     Probe = 208,
     /// An axis of which the rotors give more than requests are limited to.
     Authority = 209,
+    /// A lag of the rotors for which `mix_dynamic` is not proven: thrust may fall where throttles rise.
+    RotorLag = 210,
 
     /// Thrust and torque in a ratio that no propeller has: one of them is in another unit.
     PairUnits = 300,
