@@ -53,6 +53,11 @@ pub(crate) fn exponents(text: &str) -> Result<[f64; 2], String> {
     Ok([exponent(thrust)?, exponent(torque)?])
 }
 
+/// A throttle that turns a rotor.
+pub(crate) fn throttle(text: &str) -> Result<f64, String> {
+    number(text, |x| 0.0 < x && x <= 1.0, "is no throttle above 0, up to 1")
+}
+
 fn two(text: &str) -> Result<[f64; 2], String> {
     let (a, b) = text
         .split_once(',')
@@ -150,6 +155,7 @@ impl ReadingArgs {
                     units: self.units.clone(),
                     full_rpm: self.rpm_at_full,
                     swap: self.swap,
+                    ..ByHand::default()
                 },
                 pwm_range: self.pwm_range,
             },

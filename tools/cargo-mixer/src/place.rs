@@ -121,7 +121,7 @@ impl Place {
                     path.display()
                 ));
             }
-            None if self.to_stdout() => {}
+            None if self.to_stdout() || answer.tables.is_empty() => {}
             None => self.next("-o PAIR.toml writes the tables; nothing is written without it"),
         }
         Ok(())

@@ -540,7 +540,7 @@ pub(crate) fn equal_commands(files: &[&str]) -> String {
 const REFUSED: f64 = 0.05;
 
 /// Refuses a file of which too many rows are refused, with the reason that most of them share.
-fn few_refused(name: &str, refused: &[RefusedRow], rows: usize) -> Result<(), Refusal> {
+pub(crate) fn few_refused(name: &str, refused: &[RefusedRow], rows: usize) -> Result<(), Refusal> {
     if refused.len() as f64 <= REFUSED * rows as f64 {
         return Ok(());
     }

@@ -4,7 +4,7 @@
 //! text -> [`bench::read`] -> [`mod@bench`] (start and stop rows, plateaus, signs) ->
 //! [`fit::voltage`] exponents -> [`fit::pair`]: outliers ([`fit::robust`]), choice of the basis
 //! ([`fit::cross`]), least squares ([`mod@fit`]), [`fit::fold`] -> [`fragment`], [`report`]. Of one
-//! rotor: [`rotor::single`] -> [`rotor::predict`].
+//! rotor: [`rotor::single`] -> [`rotor::predict`]; of its steps: [`mod@lag`].
 //!
 //! What there is to say of a result is one list of statements ([`statement`]): [`report`] prints it, and
 //! [`fragment`] has it as comments of the tables. [`texts`] is for front ends: text in, text out.
@@ -35,6 +35,7 @@ pub mod bench;
 pub mod fit;
 pub mod fragment;
 pub mod identified;
+pub mod lag;
 pub mod numbers;
 pub mod pair_file;
 pub mod paper;

@@ -6,6 +6,7 @@ use super::fit::Fit;
 use super::fit::cross::Candidate;
 use super::fit::pair::Pair;
 use super::identified::Identified;
+use super::lag::RotorLag;
 use super::rotor::predict::Predicted;
 use super::statement::{Detail, Statement, of_identified, of_predicted};
 
@@ -49,6 +50,64 @@ pub fn of_prediction(predicted: &Predicted) -> String {
     warnings(&mut lines, &told, usize::MAX);
     lines.join("\n") + "\n"
 }
+
+/// How a rotor follows, and the lines of the airframe file.
+pub fn of_lag(found: &RotorLag) -> String {
+    let seconds = |s: f64| format!("{s:.4}");
+    let [low, high] = found.interval_s.map(seconds);
+    let [up, down] = found.up_down_s;
+    let lag = seconds(found.lag_s);
+    let [ups, downs] = found.steps;
+    let measured = if found.by_speed { "speeds" } else { "thrusts" };
+    let brakes = match found.brakes {
+        Some(true) => "brakes",
+        Some(false) => "does not brake: rotors coast where they are to turn slower",
+        None => "the steps down are too small to tell whether it brakes: let the throttle fall by a third",
+    };
+    let told = [
+        (
+            "read",
+            format!(
+                "{}: {ups} steps up and {downs} down, {measured}",
+                found.files.join(", ")
+            ),
+        ),
+        (
+            "lag",
+            format!(
+                "{lag} s at throttle {}; 95 % interval {low} to {high} s",
+                found.throttle
+            ),
+        ),
+        ("up, down", format!("{} s, {} s", seconds(up), seconds(down))),
+        ("controller", brakes.to_owned()),
+    ];
+    let mut lines: Vec<String> = told
+        .into_iter()
+        .map(|(name, text)| format!("{name:<INDENT$}{text}"))
+        .collect();
+    let slow = found.brakes != Some(false) && down > SLOW_DOWN * up;
+    let slow = slow.then(|| {
+        format!(
+            "the way down takes {:.1} times the way up: look whether the controller brakes",
+            down / up
+        )
+    });
+    warnings(
+        &mut lines,
+        &slow.as_deref().into_iter().collect::<Vec<_>>(),
+        MOST_LINES,
+    );
+    let coasts = if found.brakes == Some(false) {
+        "rotor_brakes = false\n"
+    } else {
+        ""
+    };
+    lines.join("\n") + &format!("\n\n[vehicle]\nrotor_lag_s = {lag}\n{coasts}")
+}
+
+/// Lag of steps down over that of steps up above which a controller that brakes is in doubt.
+const SLOW_DOWN: f64 = 1.5;
 
 /// Warnings and the notes of the files.
 fn doubts(identified: &Identified) -> Vec<&str> {

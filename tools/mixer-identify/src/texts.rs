@@ -4,10 +4,11 @@ use mixer_compiler::diagnostic::content::{self, Content};
 use serde::Serialize;
 
 use super::air::Air;
-use super::bench::read;
+use super::bench::read::{self, Log};
 use super::bench::text::normalised;
-use super::bench::{self, Bench};
+use super::bench::{self, Bench, few_refused};
 use super::identified::{Identified, Settings, with_runs};
+use super::lag::{self, RotorLag};
 use super::refusal::Refusal;
 use super::rotor::predict::{self, PredictOptions, Predicted};
 use super::rotor::single::{RunFacts, Single};
@@ -55,10 +56,13 @@ impl<T> Outcome<T> {
 /// # Errors
 /// A file that cannot be read or used.
 pub fn read(text: &Text, settings: &Settings) -> Result<Bench, Refusal> {
+    bench::prepare(log(text, settings)?, &settings.preparation)
+}
+
+fn log(text: &Text, settings: &Settings) -> Result<Log, Refusal> {
     let bytes = text.content.as_ref().map_err(Refusal::clone)?;
-    let log = read::read(&text.name, bytes.as_slice(), &settings.reading)
-        .map_err(|refusal| of_another_kind(&text.name, bytes).unwrap_or(refusal))?;
-    bench::prepare(log, &settings.preparation)
+    read::read(&text.name, bytes.as_slice(), &settings.reading)
+        .map_err(|refusal| of_another_kind(&text.name, bytes).unwrap_or(refusal))
 }
 
 /// The refusal of a file that was meant for another command; `None` of a table and of what nothing is known of.
@@ -70,10 +74,12 @@ fn of_another_kind(name: &str, bytes: &[u8]) -> Option<Refusal> {
 }
 
 fn read_all(texts: &[Text], settings: &Settings) -> Result<Vec<Bench>, Vec<Refusal>> {
-    let (ready, refused): (Vec<_>, Vec<_>) = texts
-        .iter()
-        .map(|text| read(text, settings))
-        .partition(Result::is_ok);
+    all(texts.iter().map(|text| read(text, settings)))
+}
+
+/// All of them, or all refusals.
+fn all<T>(results: impl Iterator<Item = Result<T, Refusal>>) -> Result<Vec<T>, Vec<Refusal>> {
+    let (ready, refused): (Vec<_>, Vec<_>) = results.partition(Result::is_ok);
     match refused.is_empty() {
         true => Ok(ready.into_iter().flatten().collect()),
         false => Err(refused.into_iter().filter_map(Result::err).collect()),
@@ -171,6 +177,32 @@ pub fn predict(
         details: report.clone(),
         report,
         tables: fragment::of_prediction(&found),
+        json: json(&found)?,
+        found,
+    })
+}
+
+/// Finds the lag at a throttle of the rotor whose steps `texts` have; `exponent` is that of thrust by voltage.
+///
+/// # Errors
+/// All files that cannot be read, else why their steps tell no lag.
+pub fn rotor_lag(
+    texts: &[Text],
+    exponent: f64,
+    throttle: f64,
+    settings: &Settings,
+) -> Result<Outcome<RotorLag>, Vec<Refusal>> {
+    let logs = all(texts.iter().map(|text| {
+        let log = log(text, settings)?;
+        few_refused(&log.name, &log.refused, log.samples.len() + log.refused.len())?;
+        Ok(log)
+    }))?;
+    let found = lag::find(&logs, exponent, throttle).map_err(|refusal| vec![refusal])?;
+    let report = report::of_lag(&found);
+    Ok(Outcome {
+        details: report.clone(),
+        report,
+        tables: String::new(),
         json: json(&found)?,
         found,
     })

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use mixer_compiler::airframe::Basis;
+use mixer_compiler::airframe::{Basis, TYPICAL_EXPONENT};
 use mixer_compiler::quantity;
 use mixer_identify::bench::Preparation;
 use mixer_identify::bench::read::refusal_notes;
@@ -13,9 +13,9 @@ use mixer_identify::fit::basis::ThrottleBox;
 use mixer_identify::fit::wishes::FitOptions;
 use mixer_identify::identified::Settings;
 use mixer_identify::refusal::Refusal;
-use mixer_identify::texts::{Outcome, Prediction, identify};
+use mixer_identify::texts::{Outcome, Prediction, identify, rotor_lag};
 
-use crate::bench_args::{AirArgs, ReadingArgs, exponents, of, throttle_box};
+use crate::bench_args::{AirArgs, ReadingArgs, exponents, of, throttle, throttle_box};
 use crate::bench_files::{self, Reader};
 use crate::commands::predict::{self, RotorArgs};
 use crate::pack::PackArgs;
@@ -72,6 +72,11 @@ pub struct IdentifyArgs {
     /// The battery of the vehicle
     #[command(flatten)]
     pub pack: PackArgs,
+    /// The files are logs of one rotor whose throttle steps (time, throttle, speed or thrust, 50 Hz or more): find its lag at
+    /// this throttle, that of hover, for `[vehicle] rotor_lag_s`, and whether its controller brakes.
+    #[arg(long, value_name = "THROTTLE", value_parser = throttle,
+        conflicts_with_all = ["output", "frame", "prior", "lower_out", "upper_out", "verbose", "rpm_at_full"])]
+    pub lag_at: Option<f64>,
     /// Few rows of the pair on top of what this run of one rotor predicts (`cargo mixer predict`):
     /// four rows serve, thrust alone serves a little. From 16 rows on leave it out.
     #[arg(long, value_name = "SINGLE.csv")]
@@ -106,7 +111,8 @@ fn bases() -> impl TypedValueParser<Value = BasisChoice> {
 impl IdentifyArgs {
     /// The settings that the arguments ask for.
     pub fn settings(&self) -> Settings {
-        let settings = self.reading.settings();
+        let mut settings = self.reading.settings();
+        settings.reading.by_hand.speed_serves = self.lag_at.is_some();
         Settings {
             preparation: Preparation {
                 is_correction: self.prior.is_some(),
@@ -152,6 +158,11 @@ impl IdentifyArgs {
         let runs = [&self.prior, &self.lower_out, &self.upper_out];
         let [prior, upper, lower] = runs.map(|run| run.as_deref().map(reader));
         let settings = self.settings();
+        if let Some(throttle) = self.lag_at {
+            let exponent = self.voltage_exponent.map_or(TYPICAL_EXPONENT, |k| k[0]);
+            let answer = rotor_lag(&maps, exponent, throttle, &settings).map_err(NoAnswer::Refused)?;
+            return Ok((answer.texts(), Vec::new()));
+        }
         if let Some(single) = &prior {
             let held = self.reading.rpm_at_full.is_some();
             let exponents = predict::exponents(self.voltage_exponent, held);

@@ -107,6 +107,8 @@ pub struct ByHand {
     pub full_rpm: Option<f64>,
     /// Exchange the two rotors that the header suggests.
     pub swap: bool,
+    /// Whether speeds serve without thrust.
+    pub speed_serves: bool,
 }
 
 /// How a column is named.
@@ -272,7 +274,7 @@ impl Columns {
             let of_upper = lower.as_ref().map_or("", |_| " of the upper rotor");
             lacks.push((format!("no throttle column{of_upper}"), mend));
         }
-        if !self[Quantity::Thrust].any() {
+        if !self[Quantity::Thrust].any() && !(by_hand.speed_serves && self[Quantity::Speed].any()) {
             lacks.push(("no thrust column".to_owned(), named("thrust", "HEADER")));
         }
     }

@@ -46,13 +46,13 @@ pub fn means(samples: &[Sample]) -> (Vec<Sample>, usize) {
             rotors: [0, 1].map(|r| mean(&|s| of(s).rotors[r])),
         };
         points.push(Sample {
-            line: rows[0].line,
             throttle: [0, 1].map(|r| mean(&|s| s.throttle[r])),
             thrust: split(|s| s.thrust),
             torque: split(|s| s.torque),
             voltage: [0, 1].map(|r| mean(&|s| s.voltage[r])),
             power_w: mean(&|s| s.power_w),
             speed: [0, 1].map(|r| mean(&|s| s.speed[r])),
+            ..rows[0]
         });
     }
     (points, dropped)
@@ -98,6 +98,7 @@ mod tests {
             voltage: [f64::NAN; 2],
             power_w: f64::NAN,
             speed: [f64::NAN; 2],
+            time_s: f64::NAN,
         }
     }
 

@@ -92,6 +92,8 @@ pub struct Sample {
     pub power_w: f64,
     /// Speeds of the upper and of the lower rotor, in the file's unit.
     pub speed: [f64; 2],
+    /// Time since the log's start, s.
+    pub time_s: f64,
 }
 
 impl Sample {
@@ -382,6 +384,9 @@ impl Cells {
                 .find(|power| !power.is_nan())
                 .unwrap_or(f64::NAN),
             speed,
+            time_s: self
+                .value(&columns[Quantity::Time].whole, record)
+                .unwrap_or(f64::NAN),
         })
     }
 

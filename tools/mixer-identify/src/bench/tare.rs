@@ -164,6 +164,7 @@ mod tests {
             voltage: rotors,
             power_w: f64::NAN,
             speed: [speed; 2],
+            time_s: f64::NAN,
         };
         rows.iter().enumerate().map(row).collect()
     }
