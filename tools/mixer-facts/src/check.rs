@@ -50,7 +50,7 @@ impl Checked {
     pub fn verdict(&self) -> String {
         let mut text: String = lines(self.facts.iter().filter(|fact| fact.in_verdict));
         for axis in Axis::ALL {
-            if let Some(rises) = Checklist(&self.compiled).rises_in_words(axis) {
+            if let Some(rises) = Checklist(&self.compiled).rises_in_words(axis, 0) {
                 let command = format!("+{}", axis.name());
                 let _ = writeln!(text, "{command:<18}  raises outputs {rises}");
             }

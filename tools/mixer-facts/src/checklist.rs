@@ -37,7 +37,7 @@ impl fmt::Display for Checklist<'_> {
             writeln!(f, "  unit {index:<9} {}: {rotors}", place(unit, units))?;
         }
         for axis in Axis::ALL {
-            if let Some(rises) = self.rises_in_words(axis) {
+            if let Some(rises) = self.rises_in_words(axis, 0) {
                 let (command, motion) = (format!("+{}", axis.name()), motion(axis));
                 writeln!(f, "  {command:<14} raises outputs {rises} ({motion})")?;
             }
@@ -62,12 +62,15 @@ impl Checklist<'_> {
         place(unit, &self.0.airframe.units)
     }
 
-    /// The outputs by how much they rise, most of all first: `4, 6 by 0.021; 1, 3 by 0.019`.
-    pub fn rises_in_words(&self, axis: Axis) -> Option<String> {
+    /// The outputs by how much they rise, most of all first: `4, 6 by 0.021; 1, 3 by 0.019`, counted from `first` on.
+    pub fn rises_in_words(&self, axis: Axis, first: usize) -> Option<String> {
         let mut by_rise: BTreeMap<i32, Vec<String>> = BTreeMap::new();
         for (output, rise) in self.rises(axis)? {
             let thousandths = (1000.0 * rise).round() as i32;
-            by_rise.entry(-thousandths).or_default().push(output.to_string());
+            by_rise
+                .entry(-thousandths)
+                .or_default()
+                .push((output + first).to_string());
         }
         let groups = by_rise
             .into_iter()

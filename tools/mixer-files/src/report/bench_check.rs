@@ -25,21 +25,21 @@ pub(crate) fn bench_check(study: &Study<'_>) -> Markup {
     let mut rotors: Vec<_> = rotors.collect();
     rotors.sort_by_key(|(output, ..)| *output);
     let axes = Axis::ALL.into_iter();
-    let axes = axes.filter_map(|axis| Some((axis, checklist.rises_in_words(axis)?)));
+    let axes = axes.filter_map(|axis| Some((axis, checklist.rises_in_words(axis, 1)?)));
     html! {
         p {
-            "Propellers off. Drive the outputs one by one, then command each axis; spins are as seen from above. The lines are \
+            "Propellers off. Drive the motors one by one, then command each axis; spins are as seen from above. The lines are \
              for PX4\u{2019}s shell, and for MAVProxy with this mixer\u{2019}s frame class of ArduPilot: ArduPilot\u{2019}s own \
              classes test motors in orders of their own."
         }
         div.wide.words {
             table.outputs {
-                caption { "Outputs" }
-                (header(["output", "drives", "turns", "PX4", "ArduPilot", "seen"]))
+                caption { "Motors" }
+                (header(["motor", "drives", "turns", "PX4", "ArduPilot", "seen"]))
                 tbody {
                     @for (output, drives, spin) in &rotors {
                         tr.check data-output=(output) {
-                            th scope="row" { (output) }
+                            th scope="row" { (output + 1) }
                             td { (drives) }
                             td { (spin.in_words()) }
                             @for line in lines(*output, &airframe.throttle) { td.drive { code.line { (line) } } }
@@ -52,7 +52,7 @@ pub(crate) fn bench_check(study: &Study<'_>) -> Markup {
         div.wide.words {
             table {
                 caption { "Commands, the strongest outputs first" }
-                (header(["command", "raises outputs", "moves", "seen"]))
+                (header(["command", "raises motors", "moves", "seen"]))
                 tbody {
                     @for (axis, rises) in axes {
                         tr.check data-axis=(axis.name()) {

@@ -1,4 +1,4 @@
-//! The layout from above: units, spins of both rotors, output channels, and where forward is.
+//! The layout from above: units, spins of both rotors, motors, and where forward is.
 
 use std::fmt::Write as _;
 
@@ -28,7 +28,7 @@ pub fn layout(airframe: &Airframe) -> Figure {
         [low - margin, high + margin]
     };
     let mut figure = Figure::new(
-        "Layout seen from above: units, spins and output channels",
+        "Layout seen from above: units, spins and motors",
         ("y, right (m)", extent(0)),
         ("x, forward (m)", extent(1)),
     )
@@ -87,7 +87,7 @@ fn disk_radius(places: &[[f64; 2]]) -> f64 {
     }
 }
 
-/// One unit as SVG: two rings with arrows, its number and channels, apart where something else is
+/// One unit as SVG: two rings with arrows, its number and those of its motors, apart where something else is
 /// drawn between them.
 fn drawn(unit: &Unit, index: usize, [x, y]: [f64; 2], radius: f64, crowded: bool) -> String {
     let gap = if crowded { 7.0 } else { 0.0 };
@@ -126,8 +126,8 @@ fn drawn(unit: &Unit, index: usize, [x, y]: [f64; 2], radius: f64, crowded: bool
         y - 3.0 - gap,
         y + 13.0 + gap,
         match unit.lower_channel {
-            Some(lower) => format!("\u{2191}{}  \u{2193}{lower}", unit.upper_channel),
-            None => unit.upper_channel.to_string(),
+            Some(lower) => format!("\u{2191}{}  \u{2193}{}", unit.upper_channel + 1, lower + 1),
+            None => (unit.upper_channel + 1).to_string(),
         }
     );
     svg

@@ -154,7 +154,7 @@ fn warnings(study: &Study<'_>, bench: Option<&BenchPoints>) -> Markup {
                 @for record in &records {
                     li {
                         b {
-                            "Warning " (record.code)
+                            "Warning"
                             @if let Some(line) = record.line { ", line " (line) }
                             ":"
                         }
@@ -195,7 +195,7 @@ fn figures(figures: &[Markup]) -> Markup {
 
 fn layout_section(study: &Study<'_>) -> Markup {
     let figure = layout::layout(&study.compiled.airframe);
-    let caption = "Seen from above. Disks are not to scale.";
+    let caption = "Seen from above; disks are not to scale. Motor 1 is output 0 of code and airframe file.";
     html! {
         (beside(&still(&figure.svg(), caption, &link::sweep(study, Data::Layout)), &table::units(study)))
     }
@@ -243,10 +243,9 @@ fn comparison_section(study: &Study<'_>) -> Markup {
         "Thrust and torque of every unit, one point per yaw command (Fig. 6 of the paper).",
         &link::sweep(study, Data::Yaw),
     );
-    let thrusts = plots::yaw_thrusts(&comparison)
-        .into_iter()
-        .zip(["yaw-thrust", "yaw-thrust-2"]);
-    let thrusts = thrusts.map(|(figure, word)| curves(figure, "Thrust of every unit.", word));
+    let thrusts = plots::yaw_thrusts(&comparison).into_iter().enumerate();
+    let thrusts =
+        thrusts.map(|(k, figure)| curves(figure, "Thrust of the units.", &format!("yaw-thrust-{k}")));
     let others = [
         curves(plots::yaw_total(&comparison), "Total thrust given.", "yaw-total"),
         curves(

@@ -137,39 +137,34 @@ fn over_yaw(
     Figure::new(title, ("yaw asked (N m)", asked), (label, values)).reading_curves()
 }
 
-/// The thrust of every unit over the yaw asked: of both mixers in one figure, of each in its own where more than three units
-/// differ.
+/// The thrust of every unit over the yaw asked: in one figure, of each unit in its own where more than three differ.
 pub fn yaw_thrusts(comparison: &Comparison) -> Vec<Figure> {
-    let mixers = mixers(comparison);
-    match comparison.alike().len() <= 3 {
-        true => vec![yaw_thrust(comparison, &mixers)],
-        false => mixers
-            .chunks(1)
-            .map(|mixer| yaw_thrust(comparison, mixer))
-            .collect(),
-    }
+    let alike = comparison.alike();
+    let each = alike.chunks(if alike.len() > 3 { 1 } else { 3 });
+    each.map(|of| yaw_thrust(comparison, of)).collect()
 }
 
-fn yaw_thrust(comparison: &Comparison, mixers: &[Mixer]) -> Figure {
+fn yaw_thrust(comparison: &Comparison, alike: &[Vec<usize>]) -> Figure {
     let efforts = |row: &'_ Row| {
         [&row.coaxial, &row.conventional]
             .map(|answer| answer.efforts.clone())
             .concat()
     };
+    // One scale for all units.
     let thrusts = comparison.rows.iter().flat_map(efforts).map(|efforts| efforts[0]);
+    let all = thrusts.chain(comparison.share_n.iter().copied());
     // Units that share the thrust alike have one line.
-    let mut shares = comparison.share_n.clone();
+    let mut shares: Vec<f64> = alike.iter().map(|of| comparison.share_n[of[0]]).collect();
     shares.sort_by(f64::total_cmp);
     shares.dedup_by(|a, b| (*a - *b).abs() < 1e-6 * comparison.thrust_n);
     let title = "Thrust of every unit over the yaw asked";
-    let all = thrusts.chain(shares.iter().copied());
     let mut figure = over_yaw(comparison, title, "thrust of a unit (N)", all);
     for &share in &shares {
         let each = if shares.len() == 1 { " of each" } else { "" };
         figure.level("reference", &format!("share of the thrust{each}"), share);
     }
-    for (name, class, answer) in mixers {
-        for (count, of) in comparison.alike().iter().enumerate() {
+    for (name, class, answer) in &mixers(comparison) {
+        for (count, of) in alike.iter().enumerate() {
             let at = |row: &Row| [row.yaw_nm, answer(row).efforts[of[0]][0]];
             let curve: Vec<[f64; 2]> = comparison.rows.iter().map(at).collect();
             // Six dashes that are told apart without colour too.
@@ -177,11 +172,11 @@ fn yaw_thrust(comparison: &Comparison, mixers: &[Mixer]) -> Figure {
                 "series-1" => ["", " long", " long-dot"],
                 _ => [" dotted", " dashed", " dash-dot"],
             }[count % 3];
-            let class = match mixers {
-                [_] => told_apart(count),
-                _ => format!("{class}{dash}"),
-            };
-            figure.curve(&class, &format!("{name}, {}", listed(of)), &curve);
+            figure.curve(
+                &format!("{class}{dash}"),
+                &format!("{name}, {}", listed(of)),
+                &curve,
+            );
         }
     }
     figure

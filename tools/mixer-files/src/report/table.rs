@@ -20,7 +20,10 @@ pub fn summary(study: &Study<'_>, facts: &[Fact], digest: Option<&str>) -> Marku
     let file = ("Airframe file", printable(&study.compiled.source.file_name()));
     let hash = digest.map(|digest| ("SHA-256 of the file", digest.to_owned()));
     let more: Vec<(&str, String)> = [file].into_iter().chain(hash).collect();
-    let asked_first = facts.iter().filter(|fact| fact.in_verdict && !fact.is_cost());
+    // The frame is drawn below.
+    let asked_first = facts
+        .iter()
+        .filter(|fact| fact.in_verdict && !fact.is_cost() && fact.name != "frame");
     self::facts(asked_first, &more)
 }
 
@@ -33,22 +36,28 @@ pub fn facts<'a>(facts: impl Iterator<Item = &'a Fact>, more: &[(&str, String)])
     html! {
         table.facts {
             tbody {
-                @for fact in facts.filter(|fact| !fact.text().is_empty()) { tr { th scope="row" { (fact.name) } td { (said(fact)) } } }
+                @for fact in facts.filter(|fact| !fact.text().is_empty()) { tr { th scope="row" { (fact.name.replace("det J", "Jacobian")) } td { (said(fact)) } } }
                 @for (name, value) in more { tr { th scope="row" { (name) } td { (value) } } }
             }
         }
     }
 }
 
-/// Places, spins and outputs of the units.
+/// Places, spins and motors of the units.
 pub fn units(study: &Study<'_>) -> Markup {
     let header = ["unit", "x (m)", "y (m)", "z (m)", "rotors"];
     let units = study.compiled.airframe.units.iter().enumerate();
     let rows: Vec<Vec<String>> = units
         .map(|(index, unit)| {
             let [x, y, z] = unit.position_m.map(|x| fixed(x, 4));
-            let told =
-                |rotor: Rotor| format!("{} {}, output {}", rotor.layer, rotor.spin.name(), rotor.channel);
+            let told = |rotor: Rotor| {
+                format!(
+                    "{} {}, motor {}",
+                    rotor.layer,
+                    rotor.spin.name(),
+                    rotor.channel + 1
+                )
+            };
             let rotors: Vec<String> = unit.rotors().map(told).collect();
             vec![index.to_string(), x, y, z, rotors.join("; ")]
         })

@@ -6,23 +6,17 @@ use super::{Figure, MARGIN};
 use crate::report::number::escaped;
 
 impl Figure {
-    /// A vertical line with its word; the read-out begins there.
+    /// A vertical line with its word above the plot; the read-out begins there.
     pub fn mark_x(&mut self, x: f64, word: &str) {
         let [low, high] = self.axes[1].range;
         let data = self.path(&[[x, low], [x, high]], false);
         let _ = writeln!(self.layers, "<path class=\"mark\" d=\"{data}\"/>");
         let [px, _] = self.at([x, high]);
-        // To the side that has more room.
-        let (dx, anchor) = if px > MARGIN[0] + 0.5 * self.size[0] {
-            (-5.0, "end")
-        } else {
-            (5.0, "start")
-        };
         let _ = writeln!(
             self.above,
-            "<text class=\"mark-label\" x=\"{:.1}\" y=\"{}\" text-anchor=\"{anchor}\">{}</text>",
-            px + dx,
-            MARGIN[1] + 13.0,
+            "<text class=\"mark-label\" x=\"{:.1}\" y=\"{}\" text-anchor=\"middle\">{}</text>",
+            px.clamp(MARGIN[0], MARGIN[0] + self.size[0] - 20.0),
+            MARGIN[1] - 3.0,
             escaped(word)
         );
         self.start = Some([x, 0.5 * (low + high)]);
