@@ -90,7 +90,7 @@ impl Diagnostic {
     }
 }
 
-/// All faults of one airframe file, or all warnings, in the order of their places.
+/// All faults of one airframe file, or all warnings, errors first, then by harm; alike ones in the order of their places.
 ///
 /// Its `Display` is what the macro, the build-script helper and the command line show:
 ///
@@ -179,10 +179,13 @@ impl Source {
 }
 
 impl Diagnostics {
-    /// The faults of `source`, sorted by place; those without a place come last.
+    /// The faults of `source`, errors first, then warnings by harm; alike ones by place, those without a place last.
     pub fn new(source: Source, mut faults: Vec<Diagnostic>) -> Self {
         // Stable: faults of one place stay in the order in which the stages found them.
-        faults.sort_by_key(|fault| fault.span.as_ref().map_or(usize::MAX, |span| span.start));
+        faults.sort_by_key(|fault| {
+            let start = fault.span.as_ref().map_or(usize::MAX, |span| span.start);
+            (fault.code.harm(), start)
+        });
         faults.dedup();
         // Words of the file may be among them.
         for fault in &mut faults {
@@ -191,10 +194,8 @@ impl Diagnostics {
             fault.label = printable(&fault.label);
             fault.help = printable(&fault.help);
         }
-        let offsets = faults
-            .iter()
-            .map(|fault| fault.span.as_ref().map(|span| span.start));
-        let places = source.places(offsets);
+        let place = |fault: &Diagnostic| Some(source.place(fault.span.as_ref()?.start));
+        let places = faults.iter().map(place).collect();
         Self {
             source,
             faults,
@@ -207,7 +208,7 @@ impl Diagnostics {
         &self.source
     }
 
-    /// The faults, sorted by place.
+    /// The faults, in their order.
     pub fn faults(&self) -> &[Diagnostic] {
         &self.faults
     }

@@ -207,6 +207,18 @@ impl Code {
         }
     }
 
+    /// Place in the order of harm: errors, values with which the mixer is that of another vehicle, those that leave the vehicle
+    /// little, and those that only cost.
+    pub(crate) fn harm(self) -> u8 {
+        match self.number() {
+            0..300 => 0,
+            // High idles, a rotor alone, arming, voltage, hover near a limit.
+            303 | 306 | 307 | 323 | 331 | 336 | 342 | 343 | 345 | 346 => 2,
+            304 | 313 | 330..340 => 3,
+            _ => 1,
+        }
+    }
+
     /// The number in `MIX014`.
     pub fn number(self) -> u16 {
         self as u16

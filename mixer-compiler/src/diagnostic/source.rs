@@ -39,25 +39,15 @@ impl Source {
         name.to_string_lossy().into_owned()
     }
 
-    /// The places of ascending byte offsets, in one pass over the text. Offsets past the end or inside
-    /// a character are moved back to the nearest character boundary.
-    pub(crate) fn places(&self, offsets: impl Iterator<Item = Option<usize>>) -> Vec<Option<Place>> {
-        let mut counted = 0;
-        let mut place = Place { line: 1, column: 1 };
-        let mut next = |offset: usize| {
-            let offset = self.boundary(offset).max(counted);
-            for c in self.text[counted..offset].chars() {
-                match c {
-                    '\n' => (place.line, place.column) = (place.line + 1, 1),
-                    // No character that a user could see or count.
-                    BYTE_ORDER_MARK => {}
-                    _ => place.column += 1,
-                }
-            }
-            counted = offset;
-            place
-        };
-        offsets.map(|offset| offset.map(&mut next)).collect()
+    /// The place of a byte offset. One past the end or inside a character is moved back to the nearest character boundary.
+    pub(crate) fn place(&self, offset: usize) -> Place {
+        let before = &self.text[..self.boundary(offset)];
+        let line = before.rsplit('\n').next().unwrap_or_default();
+        Place {
+            line: 1 + before.matches('\n').count(),
+            // The mark is no character that a user could see or count.
+            column: 1 + line.chars().filter(|c| *c != BYTE_ORDER_MARK).count(),
+        }
     }
 
     /// The nearest character boundary at or before `offset`.
@@ -93,12 +83,9 @@ mod tests {
 
     /// Lines and columns of ascending offsets.
     fn places(text: &str, offsets: &[usize]) -> Vec<(usize, usize)> {
-        let places = Source::new("a.toml", text).places(offsets.iter().map(|offset| Some(*offset)));
-        places
-            .into_iter()
-            .flatten()
-            .map(|place| (place.line, place.column))
-            .collect()
+        let source = Source::new("a.toml", text);
+        let places = offsets.iter().map(|offset| source.place(*offset));
+        places.map(|place| (place.line, place.column)).collect()
     }
 
     #[test]

@@ -184,7 +184,7 @@ fn answer_rows<T: FromStr>(
 ) -> Result<(), Stopped> {
     let input = Answering { input, output };
     let mut rows = Rows::new(input, (task.required)(&compiled.airframe))?;
-    crate::print_notes(&rows.ignored(&compiled.airframe));
+    crate::print_notes("note", &rows.ignored(&compiled.airframe));
     let write = |text: &str| {
         let written = writeln!(output.borrow_mut(), "{text}");
         written.map_err(Stopped::Output)

@@ -39,10 +39,10 @@ pub fn print_note(message: impl Display) {
     let _ = writeln!(io::stderr().lock(), "{}", lines.collect::<Vec<_>>().join("\n"));
 }
 
-/// Says on stderr what the user of an output has to know of it.
-pub fn print_notes(notes: &[String]) {
+/// Says on stderr what the user of an output has to know of it, as a `note` or a `warning`.
+pub fn print_notes(word: &str, notes: &[String]) {
     for note in notes {
-        print_note(format_args!("note: {note}"));
+        print_note(format_args!("{word}: {note}"));
     }
 }
 

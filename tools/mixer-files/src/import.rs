@@ -51,6 +51,8 @@ pub struct Options<'a> {
 pub struct Import {
     /// The file.
     pub text: String,
+    /// What the vehicle may differ in from the file.
+    pub warnings: Vec<String>,
     /// Assumptions, and settings that the parameters lack.
     pub notes: Vec<String>,
     /// Whether the parameters have the place of each rotor, so that no arm counts.
@@ -91,7 +93,7 @@ pub fn stated(file: &Source) -> Result<Stated, String> {
 pub fn import(file: &Source, pair: Option<&Source>, options: &Options<'_>) -> Result<Import, String> {
     let mut imported = read(file, options.arm_m)?;
     let units = pairs::pair(&imported.rotors, options.upper)?;
-    imported.notes.extend(unused::notes(&imported.rotors, &units)?);
+    imported.warnings.extend(unused::notes(&imported.rotors, &units)?);
     let pair = pair
         .map(|pair| PairFile::read(&pair.name, &pair.text))
         .transpose()?;
@@ -102,11 +104,11 @@ pub fn import(file: &Source, pair: Option<&Source>, options: &Options<'_>) -> Re
     imported.notes.push(format!("the frame is {frame}"));
     imported.notes.extend(pairs::alone(&units));
     if imported.has_places && options.upper.is_empty() {
-        imported.notes.extend(pairs::upside_down(&units));
+        imported.warnings.extend(pairs::upside_down(&units));
     }
     let places: Vec<[f64; 3]> = units.iter().map(|unit| unit.position_m).collect();
     imported
-        .notes
+        .warnings
         .extend(symmetry::broken(&places).map(|(_, told)| told));
     let tables = text::tables(&mut imported, &units, pair.as_ref());
     if let Some(pulses) = &imported.pulses {
@@ -115,7 +117,7 @@ pub fn import(file: &Source, pair: Option<&Source>, options: &Options<'_>) -> Re
         let of_bench = options.pulses_us.or_else(|| bench_pulses(airframe.as_ref()?));
         let map = airframe.map(|airframe| model::mean(&airframe, &model::maps(&airframe)));
         let told = pulses.mismatch(of_bench.unwrap_or(USUAL_US), map.as_ref());
-        imported.notes.extend(told);
+        imported.warnings.extend(told);
     }
     let name = options
         .name
@@ -123,6 +125,7 @@ pub fn import(file: &Source, pair: Option<&Source>, options: &Options<'_>) -> Re
     Ok(Import {
         text: text::airframe(&name, file, &imported, &tables),
         has_places: imported.has_places,
+        warnings: imported.warnings,
         notes: imported.notes,
     })
 }

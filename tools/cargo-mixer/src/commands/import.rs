@@ -85,6 +85,7 @@ fn import(args: &ImportArgs) -> Result<(), String> {
     let pair = args.pair.as_deref().map(file::source).transpose()?;
     let made = args.answer(&parameters, pair.as_ref())?;
     file::save(&args.output, &made.text)?;
-    crate::print_notes(&made.notes);
+    crate::print_notes("warning", &made.warnings);
+    crate::print_notes("note", &made.notes);
     Ok(())
 }

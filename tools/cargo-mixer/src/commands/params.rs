@@ -81,6 +81,6 @@ pub fn run(args: &ParamsArgs) -> Done {
             }
         }
     }
-    crate::print_notes(&made.notes);
+    crate::print_notes("note", &made.notes);
     Ok(())
 }

@@ -109,6 +109,8 @@ pub(crate) struct Imported {
     pub(crate) range_v: Option<[f64; 2]>,
     /// The airmode with which the stack's controllers work, and why.
     pub(crate) airmode: Option<(&'static str, &'static str)>,
+    /// What the vehicle may differ in from the airframe file.
+    pub(crate) warnings: Vec<String>,
     /// Assumptions, and settings that the files lack.
     pub(crate) notes: Vec<String>,
 }

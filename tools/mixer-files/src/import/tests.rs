@@ -638,18 +638,13 @@ fn cases() -> Vec<(&'static str, String, Outcome)> {
 }
 
 fn outcome(text: &str, options: &Options<'_>, expected: &Outcome) -> Result<(), String> {
-    let made = import(&Source::new("a", text), None, options);
+    let made =
+        import(&Source::new("a", text), None, options).map(|made| [made.warnings, made.notes].concat());
     let (is_so, got) = match (made, expected) {
-        (Ok(made), Noted(words)) => (
-            made.notes.iter().any(|note| note.contains(words)),
-            made.notes.join("\n"),
-        ),
-        (Ok(made), Silent(words)) => (
-            !made.notes.iter().any(|note| note.contains(words)),
-            made.notes.join("\n"),
-        ),
+        (Ok(made), Noted(words)) => (made.iter().any(|note| note.contains(words)), made.join("\n")),
+        (Ok(made), Silent(words)) => (!made.iter().any(|note| note.contains(words)), made.join("\n")),
         (Err(message), Refused(words)) => (message.contains(words), message),
-        (Ok(made), Refused(_)) => (false, made.notes.join("\n")),
+        (Ok(made), Refused(_)) => (false, made.join("\n")),
         (Err(message), _) => (false, message),
     };
     is_so.then_some(()).ok_or(got)

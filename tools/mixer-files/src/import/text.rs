@@ -97,7 +97,8 @@ pub(super) fn airframe(name: &str, file: &Source, imported: &Imported, tables: &
         env!("CARGO_PKG_VERSION"),
         Path::new(&file.name).file_name().unwrap_or_default().display()
     );
-    for note in &imported.notes {
+    let warnings = imported.warnings.iter().map(|told| format!("Warning: {told}"));
+    for note in warnings.chain(imported.notes.iter().cloned()) {
         out += &commented("* ", &format!("{note}."), COMMENT);
     }
     // Names of files and comments of the pair's file are in it.
@@ -112,7 +113,7 @@ fn throttle(imported: &mut Imported, pair: Option<&PairFile>) -> [f64; 2] {
             let [lowest, highest] = names;
             let (least, most) = (low.unwrap_or(min).max(min), high.unwrap_or(max).min(max));
             if [least, most] != [min, max] {
-                imported.notes.push(format!(
+                imported.warnings.push(format!(
                     "the stack's throttles {min} to {max} are narrowed to the pair's: set {lowest} to {least}, {highest} to {most}"
                 ));
             }

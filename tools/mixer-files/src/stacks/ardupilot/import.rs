@@ -86,11 +86,10 @@ pub(crate) fn read(parameters: &Parameters, arm: Option<f64>) -> Result<Imported
                 .to_owned(),
         );
     }
-    if let Some(name) = TILTS.iter().find(|name| parameters.or(name, 0.0) > 0.0) {
-        notes.push(format!(
-            "{name} is on: the airframe is that of hover; rotors that tilt are not in the model"
-        ));
-    }
+    let tilts = TILTS.iter().find(|name| parameters.or(name, 0.0) > 0.0);
+    let tilts = tilts.map(|name| {
+        format!("{name} is on: the airframe is that of hover; rotors that tilt are not in the model")
+    });
     let spin = [("SPIN_MIN", SPIN_MIN), ("SPIN_MAX", SPIN_MAX)];
     Ok(Imported {
         origin: format!("ArduPilot, {name} ({class_name} {class}, {type_name} {kind})"),
@@ -101,6 +100,7 @@ pub(crate) fn read(parameters: &Parameters, arm: Option<f64>) -> Result<Imported
         )),
         range_v: battery(parameters, mot),
         airmode: Some(("roll-pitch", "ArduPilot asks for roll and pitch at any throttle")),
+        warnings: tilts.into_iter().collect(),
         notes,
         ..Imported::default()
     })

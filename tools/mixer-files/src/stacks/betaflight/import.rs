@@ -193,6 +193,7 @@ pub(crate) fn read(source: &Source, arm: Option<f64>) -> Result<Imported, String
     let file = &source.name;
     let mut dump = Dump::read(source)?;
     let (profile, mut notes) = dump.multirotor()?;
+    let mut warnings = Vec::new();
     let motors = || profile.motors.iter().filter(|(_, motor)| is_rotor(motor));
     let places: Vec<[f64; 2]> = motors()
         .map(|(_, (_, [_, roll, pitch, _]))| [*roll, *pitch])
@@ -219,7 +220,7 @@ pub(crate) fn read(source: &Source, arm: Option<f64>) -> Result<Imported, String
         };
         let is_alone = places.iter().filter(|place| is_same(place)).count() == 1;
         if *yaw == 0.0 && is_alone {
-            notes.push(format!(
+            warnings.push(format!(
                 "the yaw of motor {channel} is 0, which leaves its spin open: as in Betaflight's Y4 a rotor on the right turns ccw, one on \
                  the left cw; check upper_spin"
             ));
@@ -262,7 +263,8 @@ pub(crate) fn read(source: &Source, arm: Option<f64>) -> Result<Imported, String
         "the idle is throttle.min, 0.1 unless the pair's file has another; the stack's own, and its pulse widths, are not read"
             .to_owned(),
     ]);
-    notes.extend(direction(&dump, profile.reversed.as_ref()));
+    let told = direction(&dump, profile.reversed.as_ref());
+    if is_reversed { &mut notes } else { &mut warnings }.extend(told);
     notes.extend(dump.reordering.as_ref().map(|order| {
         format!(
             "motor_output_reordering is {order}: `channels` counts the motors of `mmix`, from 0, and that setting, which stays, says \
@@ -286,6 +288,7 @@ pub(crate) fn read(source: &Source, arm: Option<f64>) -> Result<Imported, String
         first_motors: "move it to the end (Betaflight: `set motor_output_reordering`), and give the rotors the first numbers of `mmix`",
         rotors,
         airmode: Some(("roll-pitch", "the nearest to Betaflight's airmode")),
+        warnings,
         notes,
         ..Imported::default()
     })

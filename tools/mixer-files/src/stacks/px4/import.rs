@@ -53,7 +53,7 @@ pub(crate) fn read(parameters: &Parameters) -> Result<Imported, String> {
         ..Imported::default()
     };
     if let Some(kind) = parameters.get("CA_AIRFRAME").filter(|kind| *kind != 0.0) {
-        imported.notes.push(format!(
+        imported.warnings.push(format!(
             "CA_AIRFRAME is {kind}, no multirotor (0): control surfaces, and rotors that tilt, are not in the model"
         ));
     }
@@ -62,7 +62,7 @@ pub(crate) fn read(parameters: &Parameters) -> Result<Imported, String> {
         place != [0.0; 2]
     };
     if let Some(index) = (count..MOST_ROTORS).find(is_placed) {
-        imported.notes.push(format!(
+        imported.warnings.push(format!(
             "CA_ROTOR_COUNT is {count}: rotor {index} and what follows it are left out"
         ));
     }
