@@ -14,7 +14,7 @@
 
 use crate::airframe::{Basis, Kind, Pair, RotorAlone, value_of_terms};
 use crate::bounds::interval::Interval;
-use crate::diagnostic::{Code, Diagnostic, rounded};
+use crate::diagnostic::{Code, Diagnostic};
 use crate::model::PairMap;
 use crate::model::polynomial::{Bivariate, ThrottleBox};
 use crate::model::wake::{self, Wake};
@@ -43,13 +43,8 @@ pub struct Injectivity {
 /// Why the forward map cannot be inverted, or not be proven to be.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Fold {
-    /// det J <= 0 at these throttles (u, l); its value there.
-    Determinant {
-        /// Throttles (u, l).
-        at: [f64; 2],
-        /// det J there, N N m.
-        value: f64,
-    },
+    /// det J <= 0 at these throttles (u, l).
+    Determinant([f64; 2]),
     /// det J < 0 at every corner: the sign of the torque is not the one of the conventions.
     Reversed,
     /// det J > 0 was proven, but no combination of the efforts is a P-matrix.
@@ -184,10 +179,7 @@ impl EnclosedPairMap {
                 }
             }
         }
-        Fold::Determinant {
-            at: worst.1,
-            value: worst.0,
-        }
+        Fold::Determinant(worst.1)
     }
 
     /// The least idle at which the map is proven injective up to the throttle `high`, rounded up to
@@ -246,26 +238,32 @@ pub(crate) fn prove(view: &View<'_, &Pair>) -> Result<(Injectivity, f64), Vec<Di
             .to_owned(),
     };
     Err(vec![match fold {
-        Fold::Determinant { at: [u, l], value } => {
-            let (key, label) = match least_idle {
-                Some(_) => ("throttle.min", "this idle is too low for the model"),
-                None => ("pair", "this model folds at every idle"),
+        Fold::Determinant([u, l]) => {
+            let (key, label, message) = match least_idle {
+                Some(idle) => (
+                    "throttle.min",
+                    "this idle is too low for the model",
+                    format!("below an idle of {idle} the map of this pair cannot be inverted: the idle is {}", throttle.low),
+                ),
+                None => (
+                    "pair",
+                    "this model folds at every idle",
+                    format!("the map of this pair cannot be inverted: it folds at throttles ({u:.3}, {l:.3})"),
+                ),
             };
-            let message =
-                format!("the pair's map folds: det J falls to {} at (u, l) = ({u:.3}, {l:.3})", rounded(value));
             view.diagnostic(Code::Fold, key, message, label, mend)
         }
         Fold::Reversed => view.diagnostic(
             Code::Fold,
             "pair.torque_nm",
-            "det J is negative over the throttle box: this torque falls where the lower rotor speeds up",
+            "this torque falls where the lower rotor speeds up, at all throttles",
             "signed for the other rotor",
             reversed(view),
         ),
         Fold::NotGlobal => view.diagnostic(
             Code::NotInjective,
             "throttle.min",
-            "det J is positive, but the map could not be proven injective: two throttle pairs may give one effort",
+            "the map of this pair is not proven to have an inverse: two pairs of throttles may give one effort",
             "",
             mend,
         ),

@@ -309,32 +309,22 @@ fn idle(
     let map = EnclosedPairMap::of(basis, &thrust.coefficients, &torque.coefficients);
     let ThrottleBox { min: from, max } = fold.commanded;
     let raised = |least: f64| Some((least, fold::round_idle(&map, CLEAR * least, max)?));
-    let ([u, l], least_det) = (fold.least_det_at, fold.least_det);
-    let (least, why) = match fold.injective {
-        true => (
-            map.least_idle(max).filter(|least| from < CLEAR * least),
-            "the map folds right below".to_owned(),
-        ),
-        false if fold.folds => (
-            fold.least_idle,
-            format!("det J falls to {least_det:.3} at (u, l) = ({u:.3}, {l:.3})"),
-        ),
-        false => (
-            fold.least_idle,
-            "the map could not be proven injective".to_owned(),
-        ),
+    let [u, l] = fold.least_det_at;
+    let least = match fold.injective {
+        true => map.least_idle(max).filter(|least| from < CLEAR * least),
+        false => fold.least_idle,
     };
     match least.and_then(raised) {
         Some((least, min)) => {
             warnings.push(format!(
-                "throttle.min is raised from {from} to {min}: {why}, the least idle without fold is {least:.4}"
+                "throttle.min is raised from {from} to {min}: below {least:.4} the map of this pair cannot be inverted"
             ));
             Ok(min)
         }
         None if fold.injective => Ok(from),
         None => Err(Refusal::of(
             files,
-            format!("the map folds whatever the idle: {why}"),
+            format!("the map of this pair folds whatever the idle, at throttles ({u:.3}, {l:.3})"),
             match fold::within(&map, fold.commanded) {
                 Some(ThrottleBox { min, max }) => {
                     format!("--throttle {min},{max}, over which it can be inverted")
