@@ -27,8 +27,12 @@ pub struct FrameArgs {
     pub outputs: Option<Stack>,
 }
 
+/// `0.45`, or with its unit, as `45cm`.
 fn arm(text: &str) -> Result<f64, String> {
-    quantity(text, "metres")
+    let mut units = [("mm", 1e3), ("cm", 1e2), ("m", 1.0)].into_iter();
+    let found = units.find_map(|(unit, per)| Some((text.strip_suffix(unit)?, per)));
+    let (number, per) = found.unwrap_or((text, 1.0));
+    quantity(number, "metres").map(|x| x / per)
 }
 
 impl FrameArgs {
