@@ -10,7 +10,7 @@ use crate::{Done, Refusal, file, print_error, print_note};
 /// Writes a C library of one or more airframes: an archive, headers, CMake and a self-test
 ///
 /// Per airframe with module name M (`isae-x8` gives isae_x8):
-///   libM.a        one object with one global function, M_mix, and no undefined symbol
+///   libM.a        one object with M_mix and M_mix_in as its global functions, and no undefined symbol
 ///   M.h           its interface, C99 and C++17, with coaxial_mixer.h, which all share
 ///   M.cmake       the imported target M
 ///   M_selftest.c  golden bits: M_selftest() counts the rows that differ

@@ -55,7 +55,7 @@ impl Header<'_> {
         };
         let density = match &airframe.air {
             Some(air) => format!(
-                "outside {:?} to {:?} `density_kg_m3` is clamped and flagged; NaN, infinite, 0 or less means {prefix}_REFERENCE_DENSITY_KG_M3, flagged",
+                "`density_kg_m3` outside {:?} to {:?} is clamped and flagged; NaN, infinite, 0 or less means {prefix}_REFERENCE_DENSITY_KG_M3, flagged",
                 air.range[0], air.range[1]
             ),
             None => "`density_kg_m3` is ignored: the airframe has no [air]".to_owned(),

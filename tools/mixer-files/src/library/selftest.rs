@@ -25,8 +25,8 @@ pub(crate) fn text(airframe: &Airframe, health: bool, dynamic: bool) -> String {
     }
     // At the bench's density by the function that takes none.
     let mix = format!(
-        "in[5] == {}_REFERENCE_DENSITY_KG_M3\n            ? {module}_mix(&setpoint, in[4], &out)\n            : {module}_mix_in(&setpoint, &conditions, &out)",
-        airframe.prefix()
+        "rows[i].in[5] == {:#x}u\n            ? {module}_mix(&setpoint, in[4], &out)\n            : {module}_mix_in(&setpoint, &conditions, &out)",
+        (compiled.airframe.reference_density() as f32).to_bits()
     );
     let call = if health {
         format!(

@@ -135,7 +135,14 @@ fn rotors_that_are_out_have_an_object_of_their_own() {
     {
         let program = folder.join("selftest");
         let mut command = Command::new(driver);
-        command.args([standard, "-Wall", "-Wextra", "-Werror", "-pedantic"]);
+        command.args([
+            standard,
+            "-Wall",
+            "-Wextra",
+            "-Wfloat-equal",
+            "-Werror",
+            "-pedantic",
+        ]);
         command.arg(format!("-D{}_SELFTEST_MAIN", module.to_uppercase()));
         if driver == "g++" {
             command.args(["-x", "c++"]);

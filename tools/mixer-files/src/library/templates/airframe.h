@@ -65,7 +65,7 @@ MIXER_STATIC_ASSERT(offsetof(@M@_mix_t, saturation) == 4 * @PREFIX@_CHANNELS + 1
  * untouched then. No pointer may be null. Reentrant: no state, no allocation. */
 int @M@_mix(const mixer_wrench_t *setpoint, float voltage_v, @M@_mix_t *out);
 
-/* The same in air of a measured density, where @M@_mix takes the bench's: @DENSITY@. */
+/* The same in air of a density that was measured; @M@_mix takes that of the bench. @DENSITY@. */
 int @M@_mix_in(const mixer_wrench_t *setpoint, const mixer_conditions_t *conditions, @M@_mix_t *out);
 
 @HEALTH@@DYNAMIC@/* In @M@_selftest.c: number of golden rows whose bits differ, 0 where all is well. */
