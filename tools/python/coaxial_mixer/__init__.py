@@ -169,7 +169,11 @@ class _Airframe:
             missing = [name for name in columns if name not in names]
             if missing:
                 raise MixerError(f"a table without {', '.join(missing)}: its columns are {', '.join(map(str, names))}")
-            rows = np.stack([_numbers(name, table[name], dtype) for name in columns], axis=-1)
+            read = [_numbers(name, table[name], dtype) for name in columns]
+            if len({column.shape for column in read}) > 1:
+                lengths = [f"{name} {column.size}" for name, column in zip(columns, read)]
+                raise MixerError(f"columns of different lengths: {', '.join(lengths)}")
+            rows = np.stack(read, axis=-1)
             volts = _condition("volts", volts, "voltage_v", table, names)
             density = _condition("density", density, "density_kg_m3", table, names)
         shape, rows = rows.shape, np.atleast_2d(rows)
