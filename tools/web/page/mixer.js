@@ -10,21 +10,20 @@ function drawn(name, attributes = {}, text = "") {
   return made;
 }
 
-// The text of a number of a table: all the digits that the command line prints.
-const exact = (x) => String(x);
-const short = (x) => (Math.abs(x) < 1e-9 ? "0" : Number(x.toPrecision(4)).toString());
+const short = (x, least = 1e-9) => (Math.abs(x) < least ? "0" : Number(x.toPrecision(4)).toString());
+const ofThrottle = (x) => (x === 0 ? "0" : x.toFixed(3));
 // What people write behind a number, in the units that the labels of fields have.
 const UNITS = {
-  m: { m: 1, cm: 0.01, mm: 0.001, in: 0.0254, inch: 0.0254, '"': 0.0254 }, kg: { kg: 1, g: 0.001, lb: 0.45359237 },
-  V: { V: 1, mV: 0.001 }, "cells in series": { S: 1, s: 1, cells: 1 }, N: { N: 1 }, g: { g: 1, gf: 1, kg: 1000, N: 1000 / 9.80665 }, "N m": { "N m": 1, Nm: 1 }, "N m/N": { "N m/N": 1, "Nm/N": 1, m: 1 },
+  m: { m: 1, cm: 0.01, mm: 0.001, in: 0.0254, inch: 0.0254, '"': 0.0254 }, kg: { kg: 1, g: 0.001, lb: 0.45359237, oz: 0.028349523125 },
+  V: { V: 1, mV: 0.001 }, "cells in series": { S: 1, s: 1, cells: 1 }, mAh: { mAh: 1, Ah: 1000 }, N: { N: 1 }, g: { g: 1, gf: 1, kg: 1000, N: 1000 / 9.80665, lb: 453.59237, oz: 28.349523125 }, "N m": { "N m": 1, Nm: 1 }, "N m/N": { "N m/N": 1, "Nm/N": 1, m: 1 },
   "kg/m\u00b3": { "kg/m\u00b3": 1, "kg/m3": 1 },
 };
 
-// The number that was typed into a field with a label as `Arm, m`: `4,5` and `450 mm` are read. Of `1,500` nobody knows
+// The number that was typed into a field with a label as `Arm, m`: `4,5`, `1 200` and `450 mm` are read. Of `1,500` nobody knows
 // which it is.
 function number(label, typed) {
   const [, name, unit] = label.match(/^(.*), (.*)$/);
-  const [, digits, behind] = typed.trim().match(/^([+-]?(?:\d+(?:[.,]\d*)?|[.,]\d+)(?:e[+-]?\d+)?)\s*(.*)$/i) ?? [];
+  const [, digits, behind] = typed.trim().replace(/(?<=\d)[\s\u00a0\u202f](?=\d{3}(?!\d))/g, "").match(/^([+-]?(?:\d+(?:[.,]\d*)?|[.,]\d+)(?:e[+-]?\d+)?)\s*(.*)$/i) ?? [];
   const by = behind ? UNITS[unit]?.[behind] : 1;
   if (digits === undefined || by === undefined) throw new Refused(`${name}: ${typed} is no number in ${unit}, as 4.5 or 4,5 is`);
   if (/^[+-]?[1-9]\d{0,2},\d{3}$/.test(digits)) throw new Refused(`${name}: ${typed} may mean two numbers; write ${digits.replace(",", ".")} or ${digits.replace(",", "")}`);
@@ -33,6 +32,10 @@ function number(label, typed) {
 }
 const labelOf = (field) => field.labels[0].firstChild.textContent.trim();
 
+// The number of a rotor as the chosen stack counts its motors, from 1; code and airframe file count outputs from 0.
+const isByOutput = () => document.getElementById("stack").value === "own";
+const motor = (channel) => (isByOutput() ? channel : channel + 1);
+
 // The frame seen from above, with a ring for every rotor as long as its throttle.
 class FromAbove {
   constructor(svg) {
@@ -40,7 +43,8 @@ class FromAbove {
   }
 
   // What does not move: `units` are those of Desk.scene.
-  frame(units) {
+  // A known diameter (m) is drawn to scale.
+  frame(units, diameter) {
     const { svg } = this;
     const far = Math.max(1e-9, ...units.map(({ place_m }) => Math.hypot(...place_m)));
     const place = ({ place_m: [x, y] }) => [150 + 98 * y / far, 150 - 98 * x / far];
@@ -52,7 +56,7 @@ class FromAbove {
     this.rings = [];
     for (const unit of units) {
       const [x, y] = place(unit), size = Math.min(13, radius / (units.length > 4 ? 4.4 : 3.6));
-      svg.append(drawn("circle", { class: "disk", cx: x, cy: y, r: radius }));
+      svg.append(drawn("circle", { class: "disk", cx: x, cy: y, r: diameter ? Math.min(70, 49 * diameter / far) : radius }));
       unit.channels.forEach((channel, layer) => {
         const at = { cx: x, cy: y, r: radius - 16 + 10 * layer, pathLength: 1 };
         const clockwise = (unit.upper_spin === "cw") === (layer === 0);
@@ -70,10 +74,23 @@ class FromAbove {
     throttles.forEach((throttle, channel) => {
       const { ring, text, spin } = this.rings[channel], out = failed.includes(channel);
       ring.classList.toggle("out", out);
-      ring.setAttribute("stroke-dasharray", out ? ".02 .02" : `${throttle} 1`);
-      text.textContent = out ? `${channel} out` : `${channel}${spin} ${Math.round(100 * throttle)}`;
+      ring.setAttribute("stroke-dasharray", out ? ".02 .02" : `${throttle ?? 0} 1`);
+      text.textContent = out ? `${motor(channel)} out` : `${motor(channel)}${spin} ${throttle === null ? "" : Math.round(100 * throttle)}`;
     });
   }
+}
+
+// A pair seen from the side, with what "Arm", "Diameter" and "Spacing" are: to scale as far as they are known, in m.
+function drawSide(svg, { arm, diameter, spacing }) {
+  const scale = Math.min(130 / (arm || 0.45), 120 / (diameter || 0.3)), [x, y] = [30 + scale * (arm || 0.45), 72];
+  const half = scale * (diameter || 0.3) / 2, high = Math.max(14, Math.min(44, scale * (spacing || 0.08)));
+  const line = (kind, d, known = true) => drawn("path", { class: known ? kind : `${kind} unsaid`, d });
+  const text = (x, y, kind, word, value) => drawn("text", { class: kind, x, y, "font-size": 12 }, value ? `${word} ${short(value)} m` : word);
+  svg.replaceChildren(line("arm", `M30 ${y}H${x}V${y - high}`), drawn("circle", { class: "disk", cx: 30, cy: y, r: 9 }),
+    line("rotor", `M${x - half} ${y - high}h${2 * half}`, diameter), line("rotor lower", `M${x - half} ${y}h${2 * half}`, diameter),
+    line("measure", `M30 ${y + 18}v8m0 -4H${x}m0 -4v8`), text((30 + x) / 2, y + 40, "middle", "Arm", arm),
+    line("measure", `M${x - half} ${y - high - 14}v8m0 -4h${2 * half}m0 -4v8`), text(x, y - high - 18, "middle", "Diameter", diameter),
+    line("measure", `M${x + half + 6} ${y - high}h8m-4 0v${high}m-4 0h8`), text(Math.min(x + half + 18, 222), y + 14, "", "Spacing", spacing));
 }
 
 class Hand {
@@ -96,7 +113,7 @@ class Hand {
   // another name begins in hover.
   show(scene, name, before) {
     const at = before?.name === name ? before : null;
-    this.scene = { ...scene };
+    this.scene = { ...scene, hover_n: Number(scene.hover_n.toPrecision(4)) };
     this.scene.largest = this.scene.largest.map((x) => Number(x.toPrecision(4)));
     const { largest, hover_n, volts, density, units } = this.scene;
     const within = (x, ends) => (ends ? Math.min(ends[2], Math.max(ends[0], x ?? ends[1])) : 0);
@@ -149,7 +166,8 @@ class Hand {
 
   rotors() {
     const arrow = ({ channels }, layer) => (channels.length > 1 ? `${"\u2191\u2193"[layer]} ` : "");
-    const label = ({ channel, layer, unit }) => `${channel} ${arrow(unit, layer)}${unit.place}`;
+    const word = isByOutput() ? "output" : "motor";
+    const label = ({ channel, layer, unit }) => `${word} ${motor(channel)} ${arrow(unit, layer)}${unit.place}`;
     document.getElementById("rotors").replaceChildren(...this.all().map((rotor) => {
       const button = element("button", { type: "button", textContent: label(rotor) });
       button.dataset.output = rotor.channel;
@@ -221,9 +239,10 @@ class Hand {
     this.flag(bits === 0 ? "Delivered in full" : told.join(", "), bits !== 0);
     document.getElementById("flags").dataset.bits = bits;
     const fill = (table, rows) => document.querySelectorAll(`#${table} tbody tr`).forEach((row, k) =>
-      row.querySelectorAll("td").forEach((cell, column) => { cell.textContent = rows[k][column]; }));
-    fill("throttles", throttles.map((throttle, channel) => [exact(throttle), exact(isolated.throttles[channel])]));
-    fill("wrench", AXES.map((_, k) => [exact(this.at.wrench[k]), exact(achieved[k]), short(isolated.given[k])]));
+      // All the digits that the command line prints are there for who looks.
+      row.querySelectorAll("td").forEach((cell, column) => { [cell.textContent, cell.dataset.exact] = rows[k][column]; }));
+    fill("throttles", throttles.map((throttle, channel) => [throttle, isolated.throttles[channel]].map((x) => [ofThrottle(x), x])));
+    fill("wrench", AXES.map((_, k) => [this.at.wrench[k], achieved[k], isolated.given[k]].map((x) => [short(x, 1e-4 * this.scene.largest[k]), x])));
     this.top.turn(throttles, this.at.failed);
     const corner = ([n, nm]) => `${this.toX(byThrust * n).toFixed(1)} ${this.toY(byTorque * nm).toFixed(1)}`;
     this.border.setAttribute("d", this.scene.borders.map((border) => `M${border.map(corner).join("L")}Z`).join(""));

@@ -16,25 +16,22 @@ const SHEET_NAME = "data-sheet.csv";
 // Fields whose number is an option of the same name, with the commands that have it.
 const NUMBERS = { arm: ["new", "import"], cells: ["identify", "predict"], diameter: ["predict"], spacing: ["predict"], "run-voltage": ["predict"] };
 // Fields whose text is an option of the same name of the commands that read bench files.
-const TEXTS = ["pwm-range", "voltage-exponent"];
+const TEXTS = ["pwm-range", "voltage-exponent", "temperature", "pressure", "reference-voltage"];
 const THRUSTS = SHEET.map((percent) => `thrust-${percent}`);
-const FIELDS = ["frame", "name", "stack", "chemistry", "unit-thrust", "unit-throttle", "tare", "options", "pulses", ...Object.keys(NUMBERS), ...TEXTS, ...THRUSTS];
-// Fields of keys of the airframe file.
+const FIELDS = ["frame", "name", "stack", "chemistry", "capacity", "unit-thrust", "unit-throttle", "tare", "swap", "options", "pulses", ...Object.keys(NUMBERS), ...TEXTS, ...THRUSTS];
+// Fields of keys of the airframe file: those that are set in it after it is made, and those that it is made with.
 const KEYS = { mass_kg: "vehicle.mass_kg", airmode: "allocation.airmode", yaw_reserve_nm: "allocation.yaw_reserve_nm", power_bias_nm_per_n: "allocation.power_bias_nm_per_n" };
+const FIELD_OF = { ...Object.fromEntries(Object.entries(KEYS).map(([id, path]) => [path, id])), "layout.arm_m": "arm", name: "name" };
 const KINDS = { map: "bench file of a pair", run: "run of one rotor", pair: "pair's tables", parameters: "vehicle's parameters" };
 // From this many points on a pair's bench file needs no prediction to stand on (cargo mixer identify --prior).
 const ENOUGH = 16;
 // Bytes of a file, beyond which an editor and the browser's storage are the wrong place for it.
 const LARGEST = 4 << 20;
-const EXAMPLES = {
-  identify: "--basis cubic --temperature 18 --pressure 950", predict: "--kappa 0.015",
-  import: "--upper 0,1,2,3", new: "",
-};
 
 // Files to take along: what Desk.output and the page call them, a name, and where they go.
 const OUTPUTS = {
-  airframe: ["Airframe file", "Keep it: everything else is made of it, here or by `cargo mixer`."],
-  sheet: ["Data sheet", "What was typed in, as the file that the command line reads."],
+  airframe: ["Airframe file", "Keep it: everything else is made of it."],
+  sheet: ["Data sheet", "What was typed in, as a file."],
   pair: ["Pair's tables", "The model of the pair alone, for other airframes with the same rotors."],
   report: ["Report page", "All pictures, and the check list for the bench: tick it with the propellers off."],
   "px4-own": ["PX4 parameters", "For PX4 as it is, with its own mixer: QGroundControl, Vehicle Setup, Parameters, Tools, Load from file."],
@@ -46,7 +43,7 @@ const OUTPUTS = {
   rs: ["Generated Rust", "The mixer as a module for firmware in Rust, beside the package mixer-rt."],
   "vectors.csv": ["Golden outputs", "Setpoints and throttles to the bit, for the tests of your firmware."],
   "rotors-out.csv": ["Golden outputs, rotors out", "The same with rotors that have failed."],
-  "report.txt": ["Every number", "The text of `cargo mixer check --verbose`."],
+  "report.txt": ["Every number", "All that is known of the airframe, as text."],
 };
 const OF_STACK = {
   px4: ["px4-own", "report", "airframe", "px4"], ardupilot: ["ardupilot-own", "report", "airframe", "ardupilot"],
@@ -68,30 +65,59 @@ class Refused extends Error {
   }
 }
 const waiting = new Map();
-let asked = 0;
-const worker = new Worker(URL.createObjectURL(new Blob([$("worker").textContent], { type: "text/javascript" })));
-worker.onerror = ({ message }) => failed(message || "its worker is refused");
-worker.onmessage = ({ data: { id, value, error } }) => {
-  const [resolve, reject] = waiting.get(id);
-  waiting.delete(id);
-  if (error) reject(new Error(error));
-  else if (value?.Err !== undefined) reject(new Refused(value.Err));
-  else resolve(value?.Ok ?? value);
-};
+let asked = 0, worker, loaded;
 const ask = (method, ...words) => new Promise((...both) => {
   waiting.set(asked += 1, both);
   worker.postMessage({ id: asked, method, words });
+  doing(method, words);
 });
-const loaded = ask("open", Uint8Array.from(atob($("module").textContent.trim()), (c) => c.charCodeAt(0)));
+const program = URL.createObjectURL(new Blob([$("worker").textContent], { type: "text/javascript" }));
+const packedModule = Uint8Array.from(atob($("module").textContent.trim()), (c) => c.charCodeAt(0));
 $("module").remove();
+function begin() {
+  worker = new Worker(program);
+  worker.onerror = ({ message }) => failed(message || "its worker is refused");
+  worker.onmessage = ({ data: { id, value, error } }) => {
+    const [resolve, reject] = waiting.get(id);
+    waiting.delete(id);
+    if (error) reject(new Error(error));
+    else if (value?.Err !== undefined) reject(new Refused(value.Err));
+    else resolve(value?.Ok ?? value);
+  };
+  loaded = ask("open", packedModule);
+}
+
+// What is under way, from 300 ms on, with a way to stop it: what was put in since the last time that all was done is taken back.
+const STEPS = { kind: "Reading ", make: "Making the model", check: "Compiling", report: "Drawing the report", output: "Writing the files" };
+let since = 0, step = "";
+function doing(method, words) {
+  if (waiting.size === 1) since = performance.now();
+  step = (STEPS[method] ?? "") + (method === "kind" ? words[0] : "") || step;
+}
+setInterval(() => {
+  const seconds = (performance.now() - since) / 1000;
+  $("work").hidden = isSettled() || !view || seconds < 0.3;
+  $("work").querySelector("span").textContent = `${step}, ${seconds.toFixed(0)} s`;
+}, 100);
+class Stopped extends Error {}
+let done = "";
+function stop() {
+  worker.terminate();
+  for (const [, reject] of waiting.values()) reject(new Stopped());
+  waiting.clear();
+  [checked, reportShown] = [null, ""];
+  [state, refusedFiles] = [done ? JSON.parse(done) : fresh(), []];
+  begin();
+  changed();
+}
 
 // --- the state
 
 // `own` is an airframe that was edited or dropped, with the keys that fields are to set in it; `made` the last one that files and
-// form gave; `aside` texts that something else took the place of; `dropped` the airframes of which one is to be chosen.
+// form gave; `last` what was taken last of fields without a part in the airframe; `drawn` the units that were drawn last; `aside` texts that something else took the place of; `dropped` the airframes of which one is to be chosen.
 const fresh = () => ({
   files: [], form: Object.fromEntries(FIELDS.map((key) => [key, { frame: "x8", stack: "px4" }[key] ?? ""])), keys: {},
-  own: null, made: null, aside: [], tab: "", hand: null,
+  last: { pulses: "", capacity: "" }, drawn: null, own: null, made: null, aside: [], tab: "", hand: null,
 });
 let state = kept();
 // Of the last action alone: files that could not be read.
@@ -118,10 +144,10 @@ addEventListener("pagehide", keep);
 function kept() {
   const isFile = (file) => isText(file?.name) && isText(file?.text), areTexts = (of) => Object.values(of).every(isText);
   try {
-    const { files, form, keys, own, made, aside, tab, hand } = JSON.parse(localStorage.getItem(KEY));
-    const state = { ...fresh(), files, keys, own, made, aside, tab, hand, form: { ...fresh().form, ...form } };
+    const { files, form, keys, own, made, aside, tab, hand, last = fresh().last, drawn = null } = JSON.parse(localStorage.getItem(KEY));
+    const state = { ...fresh(), files, keys, own, made, aside, tab, hand, last, drawn, form: { ...fresh().form, ...form } };
     if (files.every(isFile) && aside.every(isFile) && [own, made].every((of) => of === null || isFile(of)) && areTexts(keys) && areTexts(own?.keys ?? {})
-      && areTexts(state.form) && isText(tab) && (hand === null || hand.wrench.length === 4 && Array.isArray(hand.failed))) return state;
+      && areTexts(state.form) && isText(tab) && areTexts(last) && (hand === null || hand.wrench.length === 4 && Array.isArray(hand.failed))) return state;
   } catch {}
   return fresh();
 }
@@ -152,9 +178,13 @@ function add(file) {
   state.files = [...state.files.filter((other) => other !== before), file];
   state.tab = file.name;
 }
-// What a text is, and the points of a bench file with options of `identify`.
+// What a text is, and the points of a bench file with options of `identify`. A long file is read once.
+let kinds = [];
 async function kindOf({ name, text }, options) {
-  const { kind, points } = await ask("kind", name, new TextEncoder().encode(text), options);
+  const words = options.join("\n"), same = (of) => of.name === name && of.words === words && of.text === text;
+  const known = kinds.find(same) ?? { name, words, text, told: await ask("kind", name, new TextEncoder().encode(text), options) };
+  kinds = [known, ...kinds.filter((of) => of !== known)].slice(0, 20);
+  const { kind, points } = known.told;
   return { kind: ["px4", "ardupilot", "betaflight"].includes(kind) ? "parameters" : kind, points };
 }
 // Takes a text for what it is.
@@ -172,11 +202,16 @@ async function drop(files) {
   for (const file of files) {
     try {
       if (file.size > LARGEST) throw new Error("above 4 MB, as no bench file is: flight logs are read by cargo mixer review");
-      const { kind, text } = await ask("kind", file.name, new Uint8Array(await file.arrayBuffer()), []);
+      const told = await ask("kind", file.name, new Uint8Array(await file.arrayBuffer()), []), { kind, text } = told;
+      kinds.unshift({ name: file.name, words: "", text, told });
       if (kind === "airframe") airframes.push({ name: file.name, text });
       else add({ name: file.name, text, chosen: "" });
-    } catch ({ message }) {
-      refusedFiles.push({ name: file.name, message });
+    } catch (error) {
+      if (error instanceof Stopped) {
+        reading -= 1;
+        return;
+      }
+      refusedFiles.push({ name: file.name, message: error.message });
     }
   }
   reading -= 1;
@@ -218,6 +253,19 @@ function numberOf(id, text) {
   }
 }
 
+// A name as files have it, made of what was typed: `My X8` is `my-x8`.
+function nameOf(typed) {
+  const plain = typed.normalize("NFKD").replace(/\p{M}/gu, "").toLowerCase().replace(/[^a-z0-9_]+/g, "-").replace(/^[-_]+|[-_]+$/g, "");
+  if (typed && !plain) throw new Refused(`${typed} has no letter from a to z`, "name");
+  return /^\d/.test(plain) ? `x-${plain}` : plain;
+}
+// Pulse widths of throttle 0 and 1, for the parameters.
+function pulsesOf(typed) {
+  const [, low, high] = typed.match(/^(\d+(?:\.\d+)?)\s*[,;]\s*(\d+(?:\.\d+)?)$/) ?? [];
+  if (typed && !(Number(low) < Number(high))) throw new Refused(`${typed} is not two widths, the one of throttle 0 first, as 1000,2000`, "pulses");
+  return typed && `${low},${high}`;
+}
+
 // The data sheet that was typed in, as a file; none without a thrust.
 function typedSheet(form) {
   const rows = SHEET.map((percent) => [percent, numberOf(`thrust-${percent}`, form[`thrust-${percent}`])]).filter(([, thrust]) => thrust);
@@ -226,17 +274,16 @@ function typedSheet(form) {
 
 // What files and form give: the files with what they are, the command lines, the pair, notes, the airframe (null without a frame).
 async function build({ files, form }) {
-  const built = { files: [], commands: [], command: "identify", pair: null, report: "", notes: [], airframe: null, faults: [], refusals: {} };
+  const built = { files: [], commands: [], command: "identify", pair: null, report: "", warnings: [], notes: [], airframe: null, faults: [], refusals: {} };
   try {
     await assemble(built, files, form);
   } catch (error) {
     if (!(error instanceof Refused)) throw error;
     for (const fault of error.faults) {
-      // What is said of an option stands at its field.
-      const option = fault.message.match(/'?--([\w-]+)/)?.[1];
-      const field = error.field || (option in NUMBERS || TEXTS.includes(option) ? option : "");
-      if (field) built.refusals[field] = [fault.message.replace(/^invalid value '.*?' for '--[^']*': /, ""), fault.help].filter(Boolean).join("; ");
-      else built.faults.push({ severity: "error", ...fault });
+      // What is said of an option stands at its field, or where it was typed.
+      const named = [...`${fault.message} ${fault.help}`.matchAll(/--([\w-]+)/g)].map(([, option]) => option);
+      const field = error.field || named.find((option) => FIELDS.includes(option)) || (named.some((option) => form.options.includes(`--${option}`)) ? "options" : "");
+      refuse(built, field, { severity: "error", ...fault, message: field ? fault.message.replace(/^invalid value '.*?' for '--[^']*': /, "") : fault.message });
     }
     Object.assign(built, { commands: [], airframe: null });
   }
@@ -250,7 +297,7 @@ async function assemble(built, files, form) {
   const options = await ask("words", form.options);
   const how = [
     ...(form["unit-thrust"] ? ["--unit", `thrust=${form["unit-thrust"]}`] : []),
-    ...TEXTS.flatMap((id) => option(id, form[id])), ...(form.tare ? ["--tare"] : []),
+    ...TEXTS.flatMap((id) => option(id, form[id])), ...["tare", "swap"].flatMap((id) => (form[id] ? [`--${id}`] : [])),
   ];
   const unit = (...roles) => (form["unit-throttle"] ? roles.flatMap((role) => ["--unit", `${role}=${form["unit-throttle"]}`]) : []);
   const all = { identify: [...how, ...unit("upper", "lower"), ...options], predict: [...how, ...unit("throttle"), ...options] };
@@ -287,19 +334,21 @@ async function assemble(built, files, form) {
       return run_(words.filter((_, k) => !gone.some((at) => k === at || k === at + 1)), tables);
     }
   };
-  const numbers = (command) => Object.keys(NUMBERS).filter((id) => NUMBERS[id].includes(command)).flatMap((id) => {
-    const value = numberOf(id, form[id]);
-    return option(id, value);
-  });
+  const heed = ({ warnings, notes }) => {
+    built.warnings.push(...warnings);
+    built.notes.push(...notes);
+  };
+  const numbers = (command) => Object.keys(NUMBERS).filter((id) => NUMBERS[id].includes(command)).flatMap((id) => option(id, numberOf(id, form[id])));
   let tables = built.files.find(({ kind }) => kind === "pair");
   if (bench) {
     const [command] = bench, chemistry = form.cells && form.chemistry ? ["--chemistry", form.chemistry] : [];
     const answer = await run_([...bench, "-o", "pair.toml", ...numbers(command), ...chemistry, ...all[command]]);
     tables = { name: "pair.toml", text: answer.toml };
-    Object.assign(built, { pair: tables, report: answer.report, notes: [...built.notes, ...answer.notes] });
+    Object.assign(built, { pair: tables, report: answer.report });
+    heed(answer);
   }
   if (!isFramed) return;
-  const { frame, name } = form, file = `${name || `my-${parameters ? "airframe" : frame}`}.toml`;
+  const { frame } = form, name = nameOf(form.name), file = `${name || `my-${parameters ? "airframe" : frame}`}.toml`;
   // Files of several pairs, each by the name of its file; `new` puts front and rear where they belong.
   const pairs = bench || of("pair").length < 2 ? [] : of("pair").map((file) => `${file.replace(/\.\w+$/, "")}=${file}`);
   const borne = pairs.length ? pairs : tables ? [tables.name] : [];
@@ -308,7 +357,7 @@ async function assemble(built, files, form) {
   const words = parameters ? ["import", parameters, ...more, "-o", file, ...rare]
     : ["new", "--frame", frame, ...more, ...await order(frame, form.stack), "-o", file, ...rare];
   const answer = await run_(words, tables);
-  built.notes = [...built.notes, ...answer.notes];
+  heed(answer);
   built.airframe = { name: file, text: answer.toml };
 }
 
@@ -320,9 +369,8 @@ async function order(frame, stack) {
 
 // The airframe with keys set in it.
 async function withKeys({ name, text }, keys) {
-  const labels = Object.fromEntries(Object.entries(KEYS).map(([id, path]) => [path, id]));
   for (const [path, typed] of Object.entries(keys)) {
-    const id = labels[path], [table, key] = path.split(".");
+    const id = FIELD_OF[path], [table, key] = path.split(".");
     const value = id === "airmode" ? typed && JSON.stringify(typed) : id ? numberOf(id, typed) : typed;
     text = await ask("set", text, table, key, value);
   }
@@ -330,7 +378,7 @@ async function withKeys({ name, text }, keys) {
 }
 
 // What came of the text that was checked last.
-let checked = null;
+let checked = null, reportShown = "";
 async function check({ name, text }) {
   if (checked?.name !== name || checked.text !== text) {
     const began = performance.now();
@@ -341,30 +389,41 @@ async function check({ name, text }) {
   return checked.told;
 }
 
-// Sets keys in an airframe and checks it; null where a key is refused, with the sentence at its field or among the faults.
+// Sets keys in an airframe and checks it; null where that is refused, with the sentence at its field or among the faults. Of an
+// airframe of one's own, errors elsewhere are its own; of files and form's any refuses it, at the field that was typed in last
+// where no other is to blame, unless no airframe is there that could stay.
 async function tried(airframe, keys, built) {
   try {
     const made = await withKeys(airframe, keys), told = await check(made);
-    const wrong = told.errors.filter(({ key }) => key in keys);
+    const wrong = told.errors.filter(({ key }) => key in keys || !state.own && (key in FIELD_OF || blamed || lastMade()));
     if (!wrong.length) return { made, told };
-    for (const { key, message, help } of wrong) refuse(built, key, `${message}; ${help}`);
+    // Its lines are not those of the airframe that stays.
+    for (const fault of wrong) refuse(built, FIELD_OF[fault.key] ?? (state.own ? "" : blamed), { severity: "error", mends: [], ...fault, file: "", line: null });
   } catch (error) {
     if (!(error instanceof Refused)) throw error;
-    if (error.field) built.refusals[error.field] = error.message;
-    else Object.keys(keys).forEach((key) => refuse(built, key, error.message));
+    const fields = error.field ? [error.field] : Object.keys(keys).map((key) => FIELD_OF[key]);
+    for (const field of fields) refuse(built, field, { severity: "error", ...error.faults[0] });
   }
   return null;
 }
-function refuse(built, key, message) {
-  const id = Object.keys(KEYS).find((id) => KEYS[id] === key);
-  if (id) built.refusals[id] = message.replace(/^`[^`]*` = /, "");
-  else built.faults.push({ severity: "error", file: "", message, help: "", mends: [] });
+function refuse(built, field, fault) {
+  if (field) built.refusals[field] ??= { ...fault, message: fault.message.replace(/^`[^`]*` = /, "") };
+  else built.faults.push(fault);
 }
+// The airframe that files and form gave last; null of the example.
+const lastMade = () => (state.made?.isExample ? null : state.made);
 
 async function settle() {
   const isExample = isPristine(), { own } = state;
   const inputs = isExample ? EXAMPLE : state, built = await build(inputs);
   let told = null, desk = null;
+  for (const [id, read] of [["pulses", pulsesOf], ["capacity", (typed) => numberOf("capacity", typed)]]) {
+    try {
+      state.last[id] = read(state.form[id]);
+    } catch (error) {
+      refuse(built, id, error.faults[0]);
+    }
+  }
   if (own) {
     const found = Object.keys(own.keys).length ? await tried(own, own.keys, built) : null;
     if (found && !stale) Object.assign(own, found.made, { keys: {} });
@@ -394,12 +453,15 @@ async function settle() {
 // --- one change after the other
 
 let view = null, reading = 0, busy = false, stale = false, timer = 0, asks = false;
+// The field that was typed in last, as long as nothing else changed an airframe that compiled before.
+let blamed = "";
 // Whether everything that is shown is of what was put in; tests wait for it.
 const isSettled = () => Boolean(view) && !reading && !busy && !stale && waiting.size === 0;
 
 // Something was put in: what can be saved is not of it until it has settled. `wait` is that of someone who types.
-function changed({ wait = 0, asks: newAsks = false } = {}) {
+function changed({ wait = 0, asks: newAsks = false, typed = false } = {}) {
   [stale, asks] = [true, newAsks];
+  if (!typed) blamed = "";
   clearTimeout(timer);
   timer = setTimeout(run, wait);
   withdraw();
@@ -416,9 +478,10 @@ async function run() {
       view = settled;
       render();
       await show();
+      if (!stale) done = JSON.stringify(state);
     }
   } catch (error) {
-    say(`The compiler stopped: ${error.message}. Reload the page, which keeps your files.`, true);
+    if (!(error instanceof Stopped)) say(`The compiler stopped: ${error.message}. Reload the page, which keeps your files.`, true);
   }
   busy = false;
 }
@@ -432,15 +495,17 @@ async function show() {
   }
 }
 
-let sceneShown = null, reportShown = "";
+let sceneShown = [];
 async function hover() {
-  const { told } = view, scene = told?.scene;
-  if (!scene || scene === sceneShown) return;
-  sceneShown = scene;
+  const { told } = view, scene = told?.scene, shown = [scene, isByOutput(), state.form.diameter];
+  if (!scene || shown.every((of, k) => of === sceneShown[k])) return;
+  sceneShown = shown;
+  state.drawn = scene.units;
   hand.show(scene, told.name, state.hand);
   const at = [scene.volts?.[1] ?? 0, scene.density?.[1] ?? 0];
   const { throttles } = await ask("mix", [0, 0, 0, scene.hover_n], ...at, []);
-  hovering.frame(scene.units);
+  measure();
+  hovering.frame(scene.units, measured.diameter);
   hovering.turn(throttles, []);
 }
 
@@ -455,6 +520,7 @@ async function drawReport() {
   main.innerHTML = answer.body;
   document.body.className = "with-report";
   if (answer.refused) main.prepend(element("p", { className: "warnings", textContent: `Bench files are not shown: ${answer.refused}` }));
+  for (const { lastChild } of main.querySelectorAll(".warnings li")) lastChild.textContent = plain(lastChild.textContent);
   if (answer.model) report(main, JSON.parse(answer.model));
 }
 
@@ -467,6 +533,27 @@ const editor = new Editor($("editor"), (text) => {
 });
 const hand = new Hand(ask, (at) => { state.hand = at; keepSoon(); });
 const hovering = new FromAbove($("hovering"));
+
+// The frame before there is an airframe: what was drawn last, else the example.
+const EXAMPLE_UNITS = [[1, 1, [0, 5], "ccw"], [-1, 1, [3, 6], "cw"], [-1, -1, [2, 7], "ccw"], [1, -1, [1, 4], "cw"]]
+  .map(([x, y, channels, upper_spin]) => ({ place_m: [0.3182 * x, 0.3182 * y], channels, upper_spin }));
+function sketch() {
+  const units = state.drawn ?? EXAMPLE_UNITS;
+  hovering.frame(units, measured.diameter);
+  hovering.turn(units.flatMap(({ channels }) => channels).map(() => null), []);
+  measure();
+}
+// Arm, diameter and spacing as they are typed; of what is no number the last one stays. Without an arm in the form it is the scene's.
+const measured = {};
+function measure() {
+  for (const id of ["arm", "diameter", "spacing"]) {
+    try {
+      measured[id] = Number(numberOf(id, state.form[id]));
+    } catch {}
+  }
+  const far = Math.max(...(state.drawn ?? EXAMPLE_UNITS).map(({ place_m }) => Math.hypot(...place_m)));
+  drawSide($("side"), { ...measured, arm: measured.arm || far });
+}
 let keepTimer = 0;
 function keepSoon() {
   clearTimeout(keepTimer);
@@ -489,7 +576,7 @@ function apart() {
 function sum() {
   const { desk, told, faults, refusals, isExample, isTheirs, pair } = view;
   const errors = faults.filter(({ severity }) => severity === "error");
-  const names = Object.keys(refusals).map((id) => labelOf($(id)).split(",")[0].replace(/^at /, "Thrust at "));
+  const names = Object.keys(refusals).map((id) => labelOf($(id)).split(",")[0].replace(/^(?=\d)/, "Thrust at "));
   const parts = [
     ...refusedFiles.map(({ name }) => `${name} is refused`),
     ...names.map((name) => `${name} is refused`),
@@ -497,7 +584,7 @@ function sum() {
     ...(asks ? ["Several airframes were dropped: choose one of those put aside"] : []),
     ...(!desk ? [pair ? "The pair is ready: the vehicle needs its frame and arm" : "The vehicle needs its frame and arm"]
       : told.errors.length ? [`${plural(told.errors.length, "error")} in ${desk.name}`]
-        : [`${told.name} compiles: ${plural((isTheirs ? warnings() : records("warning")).length, "warning")}, ${told.ms} ms`]),
+        : [`${told.name} compiles: ${plural((isTheirs ? warnings() : records("warning")).length, "warning")}, ${isTheirs && notes().length ? `${plural(notes().length, "note")}, ` : ""}${told.ms} ms`]),
     ...(apart() && desk ? ["the airframe is not the one of files and form"] : []),
   ];
   say((isExample ? "Ready. An example is shown: drop your files, or fill in your vehicle. " : "") + parts.join("; "),
@@ -505,8 +592,8 @@ function sum() {
 }
 
 const records = (severity) => (view.told?.[`${severity}s`] ?? []).map((record) => ({ severity, mends: [], ...record }));
-const notes = () => view.notes.map((note) => ({ severity: "warning", ...placed(note) }));
-const warnings = () => [...notes(), ...records("warning")];
+const notes = () => view.notes.map((note) => ({ severity: "note", ...placed(note) }));
+const warnings = () => [...records("warning"), ...view.warnings.map((warning) => ({ severity: "warning", ...placed(warning) }))];
 // A note about a row names it as errors do.
 function placed(note) {
   const file = view.files.find(({ name }) => note.message.includes(`${name}:`));
@@ -515,39 +602,81 @@ function placed(note) {
   return line ? { ...note, file: file.name, line: Number(line), message } : note;
 }
 
-// Buttons that apply what a fault's own help names: options as they stand, and values of the key at fault.
-function mendsOf({ key = "", help, mends = [], code }) {
-  const options = mends.filter((line) => !state.form.options.includes(line)).map((line) => [`Add ${line}`, () => {
-    state.form.options = `${state.form.options} ${line}`.trim();
-  }]);
+// The field of an option of the command line, or none; one of `unit` by what it is the unit of.
+const fieldOf = (name, value = "") => {
+  const id = name !== "unit" ? name : /^thrust=/.test(value) ? "unit-thrust" : /^(upper|lower|throttle)=/.test(value) ? "unit-throttle" : "";
+  return id === "pwm-range" && view.desk && !view.files.length ? "pulses" : FIELDS.includes(id) ? id : "";
+};
+const shownIn = (id, value) => [...($(id).options ?? [])].find((of) => of.value === value)?.textContent ?? value;
+const shortLabel = (id) => labelOf($(id)).replace(/, [^,]*$/, "");
+// A sentence of the command line as the page says it: options are fields by their labels, or what stands under other options.
+const OPTION = /`?--([a-z][\w-]*)(?:[= ]((?:[a-z_]+=)[^\s;)`]*[^\s,.;)`]|[A-Z][A-Z_]*(?:[,=][A-Z]+)*(?:\.\w+)?(?![a-z])|-?\d[\d.,]*\d|\d))?`?/g;
+const plain = (text) => text
+  .replace(/`cargo mixer identify` makes \[pair\] of .*|replace \[pair\] by what `cargo mixer identify` .* of a data sheet/, "drop its bench file, or its data sheet")
+  .replace(/`?cargo mixer identify`?( again)?( with)?/g, "the page$2").replace(/run identify again with/g, "set")
+  .replace(OPTION, (_, name, value = "") => {
+    const id = fieldOf(name, value), worth = value.replace(/^.*=/, "");
+    if (!id) return `the option \u201c${`${name} ${value}`.trim()}\u201d`;
+    return `\u201c${shortLabel(id)}\u201d${/^([A-Z]*$|[A-Z]+[,=.])/.test(worth) ? "" : ` ${shownIn(id, worth)}`}`;
+  });
+
+// What mends a fault, by what it names itself: [text of the button, the field, its value, or what is to be done]. One mend has one.
+function mendsOf({ key = "", message, help, mends = [], code }, field) {
+  const meant = field && `${message}; ${help}`.match(/(?:write (?:\w+ = )?|(?:mm|cm|inches) it is )(\d[\d.]*)(?=[ ,;]|$)/)?.[1];
+  if (meant) return [fills(field, meant)];
   const value = help.match(new RegExp(`(?:^|[ .])(${key.split(".").pop()}) = (-?[\\d.]+(?:e-?\\d+)?|"[\\w-]+")(?=[ ,;]|$)`));
-  const writes = /^[a-z]+\.[a-z_]+$/.test(key) && value ? [[`Write ${value[1]} = ${value[2]}`, () => write(key, value[2])]] : [];
-  const corrects = code === "MIX323" && view.pair && !state.own ? [["Take 1.75 as the exponent of the voltage", () => { state.form["voltage-exponent"] = "1.75"; }]] : [];
-  const measures = code === "MIX309" ? [["Choose a bench file", () => $("choose").click()]] : [];
-  return [...options, ...writes, ...corrects, ...measures];
+  const [own, bare] = [FIELD_OF[key], value?.[2].replace(/^"|"$/g, "")];
+  const options = mends.map((line) => {
+    const [, name, worth = ""] = line.match(/^--(\S+)(?:[ =](.*))?$/), id = fieldOf(name, worth);
+    const typed = worth.replace(/^.*=/, "") || "yes";
+    if (id) return state.form[id] !== typed && fills(id, typed);
+    return !state.form.options.includes(line) && [`Take the option \u201c${line.slice(2)}\u201d`, () => fillIn("options", `${state.form.options} ${line}`.trim())];
+  });
+  return [
+    ...new Map(options.filter(Boolean).map((mend) => [mend[0], mend])).values(),
+    ...(value && own && (own in KEYS || !state.own) ? [fills(own, bare)]
+      : value && /^[a-z]+\.[a-z_]+$/.test(key) ? [[`Write ${value[1]} = ${value[2]}`, () => { (state.own ?? state).keys[key] = value[2]; }]] : []),
+    ...(code === "MIX323" && view.pair && !state.own ? [fills("voltage-exponent", "1.75")] : []),
+    ...(code === "MIX309" ? [["Choose a bench file", () => $("choose").click()]] : []),
+  ];
 }
-// Writes a value of a key: into its field where it has one, else into the file.
-function write(key, value) {
-  const plain = value.replace(/^"|"$/g, "");
-  if (key === "layout.arm_m" && !state.own) state.form.arm = plain;
-  else (state.own ?? state).keys[key] = Object.values(KEYS).includes(key) ? plain : value;
+// A button that writes a value into a field.
+const fills = (id, value) => [`Set ${shortLabel(id)} to ${shownIn(id, value)}`, () => fillIn(id, value)];
+// Puts a value into a field, as if it was typed, and shows it.
+function fillIn(id, value) {
+  const path = KEYS[id];
+  if (path) (state.own ?? state).keys[path] = value;
+  else state.form[id] = value;
+  reveal(id);
+}
+// Opens what a field is folded in.
+function reveal(id) {
+  for (let box = $(id); box; box = box.parentElement) if (box.tagName === "DETAILS") box.open = true;
+  $(id).scrollIntoView({ block: "nearest" });
 }
 
-function faultItem({ severity, code, file, line, column, message, help, ...more }) {
-  const item = element("li", { className: severity }, element("b", { textContent: `${severity}${code ? ` ${code}` : ""} ` }));
+// The sentence of a fault, what mends it, and buttons that do.
+function sentence({ message, help = "", ...more }, field = "") {
+  const needsPair = more.code === "MIX003" && more.key === "pair";
+  const said = needsPair ? "The vehicle is read; its pair of rotors is not known yet" : plain(message);
+  const mend = needsPair ? "drop the bench file or the data sheet of the pair above" : plain(help);
+  return [said, ...(mend ? [element("br"), `Mend: ${mend}`] : []), ...mendsOf({ message, help, ...more }, field).flatMap(([textContent, apply]) => {
+    const button = element("button", { type: "button", className: "mend", textContent });
+    button.addEventListener("click", (event) => { event.preventDefault(); apply(); changed(); });
+    return [" ", button];
+  })];
+}
+
+function faultItem(fault) {
+  const { severity, code, file, line, column } = fault;
+  const item = element("li", { className: severity }, element("b", { textContent: `${severity[0].toUpperCase()}${severity.slice(1)}: ` }));
+  if (code) item.dataset.code = code;
   if (line) {
     const place = element("button", { type: "button", className: "place", textContent: `${file}:${line}` });
     place.addEventListener("click", () => { state.tab = file === view.desk?.name ? "" : file; renderEditor(); editor.go(line, column ?? 1); });
     item.append(place, " ");
   } else if (file) item.append(`${file} `);
-  const needsPair = code === "MIX003" && more.key === "pair";
-  item.append(needsPair ? "The vehicle is read; its pair of rotors is not known yet" : message);
-  if (help) item.append(element("br"), `Mend: ${needsPair ? "drop the bench file or the data sheet of the pair above" : help}`);
-  for (const [textContent, apply] of mendsOf({ code, help: help ?? "", ...more })) {
-    const button = element("button", { type: "button", className: "mend", textContent });
-    button.addEventListener("click", () => { apply(); changed(); });
-    item.append(" ", button);
-  }
+  item.append(...sentence(fault));
   return item;
 }
 
@@ -570,6 +699,8 @@ const isOfFile = () => Boolean(view.told?.verdict) && state.form.frame === fresh
 const rotorsInWords = () => view.told.verdict.match(/^rotors +(.*?)(, arms.*)?$/m)[1];
 function renderFields() {
   const { scene } = view.told ?? {};
+  const { name } = state.form;
+  $("name-made").textContent = name && !view.refusals.name && nameOf(name) !== name ? `in files ${nameOf(name)}` : "";
   for (const id of [...FIELDS, ...Object.keys(KEYS)]) {
     const field = $(id), path = KEYS[id], refusal = view.refusals[id];
     let typed = path ? (state.own ?? state).keys[path] ?? (view.isExample ? "" : scene?.[id] ?? "") : state.form[id];
@@ -582,8 +713,8 @@ function renderFields() {
       field.closest("label").append(note);
       field.setAttribute("aria-describedby", note.id);
     }
-    if (note) note.textContent = refusal ?? "";
-    if (refusal) for (let box = field.closest("details"); box; box = box.parentElement.closest("details")) box.open = true;
+    note?.replaceChildren(...(refusal ? sentence(refusal, id) : []));
+    if (refusal) reveal(id);
   }
 }
 
@@ -635,33 +766,43 @@ const faults = () => [...view.faults, ...(view.desk ? records("error") : []), ..
 
 const percent = (x) => `${(100 * x).toFixed(0)} %`;
 const span = ([least, most]) => (percent(least) === percent(most) ? percent(least) : `${percent(least).slice(0, -2)} to ${percent(most)}`);
-// The three numbers that say whether a vehicle flies well, each with what is usual.
+// Share of a pack that is used.
+const USED = 0.8;
+// The numbers that say whether a vehicle flies well, each with what is usual.
 function renderNumbers() {
   const numbers = view.told?.numbers;
-  const { volts, hover: throttles, usual_hover: usual, over_weight: ratio, yaw_nm: yaw, yaw_over_roll: share, mass_kg: mass } = numbers ?? {};
-  const lack = !numbers ? "no airframe yet" : mass === null ? "needs the mass" : "the weight is not carried";
+  const { volts, hover: throttles, usual_hover: usual, over_weight: ratio, yaw_nm: yaw, yaw_over_roll: share } = numbers ?? {};
+  const lack = !numbers ? "no airframe yet" : view.told.scene?.mass_kg === null ? "needs the mass" : throttles.length ? "" : "the weight is not carried";
   const at = volts ? ` at ${volts} V` : "";
+  const { power_w: watts } = numbers ?? {}, capacity = Number(state.last.capacity), minutes = 60 * USED * capacity / 1000 * volts / watts;
   const rows = [
     ["Hover throttle", throttles?.map(([layer, ends]) => span(ends) + (throttles.length > 1 ? ` ${layer}` : "")).join(", "),
       usual ? `usual: ${span(usual)}${at}, where these rotors give 30 to 60 % of their largest thrust` : "usual: 30 to 60 % of the largest thrust"],
     ["Thrust over weight", ratio && ratio.toFixed(2), `usual: 1.7 to 3.3${at}`],
     ["Yaw left in hover", yaw && `${short(yaw)} N m${share ? `, ${percent(share)} of the roll` : ""}`, "usual: 2 to 10 % of the roll"],
+    ["Time in hover", minutes > 0 && Number.isFinite(minutes) && `${short(Number(minutes.toPrecision(2)))} min`,
+      watts && volts ? capacity ? `${percent(USED)} of ${capacity} mAh${at}, ${short(Number(watts.toPrecision(3)))} W` : "needs the capacity of the pack" : "needs a bench file with the power, or current and voltage"],
   ];
   $("numbers").replaceChildren(...rows.map(([name, value, hint]) => element("div", {}, element("dt", { textContent: name }),
-    element("dd", {}, element("b", { textContent: value || lack }), element("small", { textContent: hint })))));
+    element("dd", {}, element("b", { textContent: value || (name === "Time in hover" && !lack ? "not known" : lack) }), element("small", { textContent: hint })))));
 }
 
 function render() {
-  const { desk, told, command, commands, isTheirs, isExample, keys } = view, { form } = state;
+  const { desk, told, command, commands, isTheirs, isExample, keys } = view;
   const compiles = Boolean(told?.verdict), reason = apart();
   renderFields();
   renderFiles();
   renderNumbers();
   renderEditor();
   $("faults").replaceChildren(...faults().map(faultItem));
+  $("notes").replaceChildren(...notes().map(faultItem));
+  $("noted").hidden = !notes().length;
+  $("noted").firstElementChild.textContent = plural(notes().length, "note");
   fill($("verdict"), compiles ? told.verdict : "");
   $("hand").hidden = !compiles;
-  $("hovering").closest("figure").hidden = !compiles;
+  const stack = $("stack").selectedOptions[0].textContent;
+  for (const part of document.querySelectorAll(".counted")) part.textContent = isByOutput() ? "Outputs as code and airframe file count them, from 0." : `Motors as ${stack} counts them: motor 1 is output 0 of code and airframe file.`;
+  $("counted").textContent = isByOutput() ? "output" : "motor";
   $("hovering-caption").textContent = compiles ? `${told.name} from above in hover, nose up; throttles in percent.` : "";
   if (!compiles) {
     reportShown = "";
@@ -680,11 +821,7 @@ function render() {
   $("made-by").hidden = !shown;
   $("command").textContent = shown;
   $("command-name").textContent = command;
-  $("options").placeholder = EXAMPLES[command];
   $("help").textContent = view.help;
-  $("vehicle-note").textContent = form.cells && !["identify", "predict"].includes(command)
-    ? "Cells and chemistry count with a bench file or a data sheet; this pair has the voltages of its own bench." : "";
-  $("library").textContent = `cargo mixer library ${quoted(desk?.name ?? "airframe.toml")} --target thumbv7em-none-eabihf -o lib`;
   $("nothing").textContent = compiles ? "Files in the order of their use." : desk ? `${desk.name} does not compile: only the file itself can be saved.` : "There is no airframe yet.";
   arrange();
   keep();
@@ -725,7 +862,7 @@ async function made(what) {
   if (what === "pair") return view.pair;
   if (what === "sheet") return sheet();
   if (what === "report") return { name: `${view.told.name}.html`, text: await ask("page", ...named(view.files.filter(({ kind }) => kind === "map"))) };
-  return ask("output", what, state.form.pulses);
+  return ask("output", what, state.last.pulses);
 }
 // Makes a file, so that its link needs nothing more than a click: a browser drops what a page saves long after one.
 async function prepare(what) {
@@ -737,10 +874,10 @@ async function prepare(what) {
     if (stale) return;
     entry.url = URL.createObjectURL(new Blob([text], { type: "application/octet-stream" }));
     Object.assign(entry.save, { href: entry.url, download: name });
-    entry.notes.replaceChildren(...notes.map((text) => note("warning", text)));
+    entry.notes.replaceChildren(...notes.map((text) => note("note", plain(text))));
   } catch (error) {
     if (!(error instanceof Refused)) throw error;
-    entry.notes.replaceChildren(note("error", error.message));
+    entry.notes.replaceChildren(note("error", plain(error.message)));
   }
 }
 
@@ -761,9 +898,20 @@ for (const id of [...FIELDS, ...Object.keys(KEYS)]) {
     else if (typed || state.own) (state.own ?? state).keys[path] = typed;
     else delete state.keys[path];
     refusedFiles = [];
-    changed({ wait: 250 });
+    if (id !== blamed) blamed = view?.told?.verdict && !Object.keys(view.refusals).length && !view.faults.length ? id : "";
+    measure();
+    changed({ wait: 250, typed: true });
   });
 }
+// A row of a table that is pasted into the data sheet goes over its fields.
+$("rows").addEventListener("paste", (event) => {
+  const cells = event.clipboardData.getData("text").trim().split(/[\t\n;]+/), at = THRUSTS.indexOf(event.target.id);
+  if (cells.length < 2) return;
+  event.preventDefault();
+  cells.slice(0, THRUSTS.length - at).forEach((cell, k) => { state.form[THRUSTS[at + k]] = cell.trim(); });
+  event.target.blur();
+  changed();
+});
 $("frame-form").addEventListener("submit", (event) => event.preventDefault());
 $("example-sheet").addEventListener("click", () => {
   add({ name: "rotor.csv", text: $("sample-sheet").textContent, chosen: "" });
@@ -780,19 +928,41 @@ $("share").addEventListener("click", async () => {
   $("link").select();
   await navigator.clipboard?.writeText(text).catch(() => {});
 });
-$("forget").addEventListener("click", () => {
+$("stop").addEventListener("click", stop);
+// What was forgotten, until the page is left: the state and the ticks.
+let forgotten = null;
+$("unforget").addEventListener("click", () => {
+  state = forgotten.state;
   try {
+    Object.assign(localStorage, forgotten.kept);
+  } catch {}
+  [forgotten, checked, reportShown, $("unforget").hidden] = [null, null, "", true];
+  changed();
+});
+$("forget").addEventListener("click", () => {
+  forgotten = { state, kept: {} };
+  $("unforget").hidden = false;
+  try {
+    forgotten.kept = { ...localStorage };
     for (const key of Object.keys(localStorage)) if (key === KEY || key.startsWith("checks of ")) localStorage.removeItem(key);
   } catch {
     // Where the browser keeps nothing there is nothing to forget.
   }
-  [state, refusedFiles, checked] = [fresh(), [], null];
+  [state, refusedFiles, checked, reportShown] = [fresh(), [], null, ""];
   $("linked").hidden = true;
   $("link").value = "";
   document.activeElement?.blur();
   changed();
 });
 
+begin();
+try {
+  sketch();
+} catch {
+  // What another version kept.
+  state.drawn = null;
+  sketch();
+}
 (async () => {
   await loaded;
   await linked();

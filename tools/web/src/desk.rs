@@ -6,6 +6,7 @@ use isolated_rotors::IsolatedTables;
 use mixer_compiler::airframe::Axis;
 use mixer_compiler::diagnostic::Record;
 use mixer_compiler::hover::HoverAt;
+use mixer_compiler::power::LevelPower;
 use mixer_compiler::{Compiled, Source};
 use mixer_facts::hover::Hover;
 use mixer_files::golden;
@@ -28,7 +29,7 @@ pub struct Checked {
 }
 
 /// What came of an airframe file.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Default, Serialize)]
 pub struct Outcome {
     /// Why it does not compile.
     pub errors: Vec<Record>,
@@ -46,8 +47,6 @@ pub struct Outcome {
 /// and where the weight is not carried.
 #[derive(Debug, Serialize)]
 pub struct Numbers {
-    /// Mass, kg.
-    pub mass_kg: Option<f64>,
     /// Voltage, V; `None` where it has no effect.
     pub volts: Option<f64>,
     /// Layers of rotors, each with its least and greatest throttle in hover; empty without hover.
@@ -60,6 +59,8 @@ pub struct Numbers {
     pub yaw_nm: Option<f64>,
     /// The same over the roll that is left.
     pub yaw_over_roll: Option<f64>,
+    /// Electrical power of all rotors, W.
+    pub power_w: Option<f64>,
 }
 
 /// Shares of the largest bare thrust at which frames hover, as the warning MIX342 has them.
@@ -94,7 +95,6 @@ impl Numbers {
         };
         let (roll_nm, yaw_nm) = (left(Axis::Roll), left(Axis::Yaw));
         Numbers {
-            mass_kg: hover.as_ref().map(|hover| hover.mass_kg),
             volts,
             hover: at.map_or_else(Vec::new, throttles),
             usual_hover: usual,
@@ -104,6 +104,7 @@ impl Numbers {
                 .zip(roll_nm)
                 .map(|(yaw, roll)| yaw / roll)
                 .filter(|share| share.is_finite()),
+            power_w: hover.and(LevelPower::new(compiled)).map(|level| level.power_w),
         }
     }
 }
@@ -113,11 +114,11 @@ pub fn check(name: &str, text: &str) -> (Option<Checked>, Outcome) {
     match mixer_facts::check(&Source::new(name, text)) {
         Ok(checked) => {
             let outcome = Outcome {
-                errors: Vec::new(),
                 warnings: checked.warnings.records(),
                 verdict: checked.verdict(),
                 name: checked.compiled.airframe.name.clone(),
                 numbers: Some(Numbers::new(&checked.compiled)),
+                ..Outcome::default()
             };
             let isolated = IsolatedTables::new(&checked.compiled);
             let compiled = checked.compiled;
@@ -126,10 +127,7 @@ pub fn check(name: &str, text: &str) -> (Option<Checked>, Outcome) {
         Err(faults) => {
             let outcome = Outcome {
                 errors: faults.records(),
-                warnings: Vec::new(),
-                verdict: String::new(),
-                name: String::new(),
-                numbers: None,
+                ..Outcome::default()
             };
             (None, outcome)
         }
@@ -215,11 +213,7 @@ impl Checked {
                 ..Options::of(stack)
             };
             let made = params(&self.compiled, &file, &options)?;
-            let ending = match stack {
-                Stack::Px4 => "params",
-                Stack::Ardupilot => "parm",
-                Stack::Betaflight => "txt",
-            };
+            let ending = ["params", "parm", "txt"][stack as usize];
             return Ok(Output {
                 name: format!("{name}{}.{ending}", if own { "-own" } else { "" }),
                 text: made.text,

@@ -2,7 +2,7 @@
 //! units' efforts out, beside those of a mixer that takes the rotors for isolated.
 
 use cargo_mixer::rows;
-use mixer_compiler::airframe::{Airmode, Axis, Correction, Unit};
+use mixer_compiler::airframe::{Axis, Correction, Unit};
 use mixer_compiler::model::scales;
 use mixer_facts::checklist::Checklist;
 use mixer_files::report::study::Study;
@@ -95,11 +95,7 @@ pub fn scene(checked: &Checked) -> Scene {
         volts: airframe.voltage.as_ref().map(of),
         density: airframe.air.as_ref().map(of),
         mass_kg: airframe.vehicle.as_ref().map(|vehicle| vehicle.mass_kg),
-        airmode: match airframe.allocation.airmode {
-            Airmode::Disabled => "disabled",
-            Airmode::RollPitch => "roll-pitch",
-            Airmode::RollPitchYaw => "roll-pitch-yaw",
-        },
+        airmode: ["disabled", "roll-pitch", "roll-pitch-yaw"][airframe.allocation.airmode as usize],
         yaw_reserve_nm: airframe.allocation.yaw_reserve_nm,
         power_bias_nm_per_n: airframe.allocation.power_bias_nm_per_n,
     }

@@ -9,7 +9,7 @@ use cargo_mixer::commands::import::ImportArgs;
 use cargo_mixer::commands::new::NewArgs;
 use cargo_mixer::commands::predict::PredictArgs;
 use cargo_mixer::place::tables_or_airframe;
-use clap::{CommandFactory as _, Parser, ValueHint};
+use clap::{CommandFactory as _, Parser};
 use mixer_compiler::Source;
 use mixer_compiler::diagnostic::printable_lines;
 use mixer_files::kind::File;
@@ -63,18 +63,20 @@ impl Files {
 }
 
 /// A file that was made.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Default, Serialize)]
 pub struct Made {
     /// The tables of a pair, or an airframe file.
     pub toml: String,
     /// What is said of it.
     pub report: String,
-    /// What its user has to know.
+    /// What is doubtful in it.
+    pub warnings: Vec<Fault>,
+    /// What else its user has to know.
     pub notes: Vec<Fault>,
 }
 
 /// What is to be known of files: why nothing was made of them, or what is doubtful in them.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Default, Serialize)]
 pub struct Fault {
     /// The file; empty where none is to blame.
     pub file: String,
@@ -91,11 +93,8 @@ pub struct Fault {
 impl Fault {
     fn general(message: impl Into<String>) -> Self {
         Fault {
-            file: String::new(),
-            line: None,
             message: message.into(),
-            help: String::new(),
-            mends: Vec::new(),
+            ..Fault::default()
         }
     }
 
@@ -105,16 +104,6 @@ impl Fault {
         self
     }
 
-    /// The first line of what clap says; the others are about a command line.
-    fn usage(error: &clap::Error) -> Self {
-        let told = said(error);
-        let first = told.lines().next().unwrap_or_default();
-        Fault {
-            help: "the field of the options takes those of the list below it".to_owned(),
-            ..Fault::general(first)
-        }
-    }
-
     fn of(refusal: &Refusal) -> Self {
         let (file, line) = refusal.file_and_line();
         Fault {
@@ -122,7 +111,7 @@ impl Fault {
             line,
             message: refusal.reason.clone(),
             help: refusal.needed.clone(),
-            mends: Vec::new(),
+            ..Fault::default()
         }
     }
 }
@@ -141,9 +130,11 @@ pub fn make(words: &[String], files: &Files) -> Result<Made, Vec<Fault>> {
     let words = ["cargo mixer"]
         .into_iter()
         .chain(words.iter().map(String::as_str));
-    let command = Make::try_parse_from(words).map_err(|error| vec![Fault::usage(&error)])?;
     let reader = |path: &Path| files.text(path);
     let general = |message: String| vec![Fault::general(message)];
+    // The first line of what clap says; the others are about a command line.
+    let usage = |error: clap::Error| general(said(&error).lines().next().unwrap_or_default().to_owned());
+    let command = Make::try_parse_from(words).map_err(usage)?;
     match command {
         Make::Identify(args) => {
             let (answer, notes) = args.answer(&reader).map_err(|none| match none {
@@ -163,10 +154,12 @@ pub fn make(words: &[String], files: &Files) -> Result<Made, Vec<Fault>> {
             let parameters = source(&args.file)?;
             let pair = args.pair.as_deref().map(source).transpose()?;
             let made = args.answer(&parameters, pair.as_ref()).map_err(general)?;
+            let faults = |told: Vec<String>| told.into_iter().map(Fault::general).collect();
             Ok(Made {
                 toml: made.text,
-                report: String::new(),
-                notes: made.notes.into_iter().map(Fault::general).collect(),
+                warnings: faults(made.warnings),
+                notes: faults(made.notes),
+                ..Made::default()
             })
         }
         Make::New(args) => {
@@ -175,8 +168,7 @@ pub fn make(words: &[String], files: &Files) -> Result<Made, Vec<Fault>> {
             let pairs: Vec<_> = pairs.collect::<Result<_, _>>().map_err(|fault| vec![fault])?;
             Ok(Made {
                 toml: args.text(&pairs).map_err(|error| general(error.to_string()))?,
-                report: String::new(),
-                notes: Vec::new(),
+                ..Made::default()
             })
         }
     }
@@ -191,48 +183,30 @@ fn answered<T>(command: &str, toml: String, answer: &Outcome<T>, notes: Vec<Stri
     Made {
         toml,
         report: printable_lines(&answer.report),
-        notes: notes
+        warnings: notes
             .map(|note| Fault::general(note).mended_by(command))
             .collect(),
+        ..Made::default()
     }
 }
 
 /// The options in a text that `identify` or `predict` take as they stand there, as `--tare` and
 /// `--unit thrust=gf`: without those that name a file, and without placeholders as `--run-voltage VOLT`.
 fn mends(command: &str, text: &str) -> Vec<String> {
-    let all = Make::command();
-    let Some(of) = all.find_subcommand(command) else {
-        return Vec::new();
+    let words = text.split_whitespace();
+    let words: Vec<&str> = words
+        .map(|word| word.trim_matches(|c: char| "`\"'(,;:.)".contains(c)))
+        .collect();
+    let takes = |option: &str| Make::try_parse_from(["cargo mixer", command, "FILE", option]).is_ok();
+    let options = words
+        .iter()
+        .enumerate()
+        .filter(|(_, word)| word.starts_with("--"));
+    let whole = |(k, word): (usize, &&str)| match words.get(k + 1).filter(|value| is_value(value)) {
+        Some(value) if takes(&format!("{word}={value}")) => Some(format!("{word} {value}")),
+        _ => takes(word).then(|| (*word).to_owned()),
     };
-    let plain = |word: &str| {
-        let word = word.trim_matches(|c: char| "`\"'(,;:.)".contains(c));
-        word.to_owned()
-    };
-    let words: Vec<String> = text.split_whitespace().map(plain).collect();
-    let next = words.iter().skip(1).map(Some).chain([None]);
-    let mut found: Vec<String> = Vec::new();
-    for (word, value) in words.iter().zip(next) {
-        let name = word.strip_prefix("--").unwrap_or_default();
-        let Some(option) = of.get_arguments().find(|option| option.get_long() == Some(name)) else {
-            continue;
-        };
-        let line = match (option.get_action().takes_values(), value) {
-            (false, _) => word.clone(),
-            (true, Some(value)) if is_value(value) && option.get_value_hint() != ValueHint::AnyPath => {
-                format!("{word} {value}")
-            }
-            _ => continue,
-        };
-        let taken = Make::try_parse_from(
-            ["cargo mixer", command, "FILE"]
-                .into_iter()
-                .chain(line.split(' ')),
-        );
-        if taken.is_ok() && !found.contains(&line) {
-            found.push(line);
-        }
-    }
-    found
+    options.filter_map(whole).collect()
 }
 
 /// Whether a word is a value and no placeholder for one.

@@ -181,6 +181,11 @@ class Desk:
         self.until(lambda: text in there(), lambda: f"{element} has no `{text}`: {there()[:600]}")
         return self
 
+    def tells(self, code):
+        """Waits for the sentence of a code, which the page does not name."""
+        expect(self.see(f"#faults [data-code={code}]").first).to_be_visible()
+        return self
+
     def drop(self, *files):
         """Drops files, each a path or (name, bytes), as a hand does; the command line has them, too."""
         files = [(file.name, file.read_bytes()) if isinstance(file, Path) else file for file in files]

@@ -57,7 +57,7 @@ def test_the_keyboard_reaches_everything_in_order(desk):
     while ("TEXTAREA" not in reached[-1] if reached else True) and len(reached) < 160:
         desk.page.keyboard.press("Tab")
         reached.append(desk.page.evaluate(at))
-    order = ["choose", "thrust-50", "diameter", "options", "frame", "arm", "mass_kg", "stack", "px4-own", "airframe", "rs", "pulses", "share", "forget", "roll",
+    order = ["choose", "thrust-50", "diameter", "options", "frame", "arm", "mass_kg", "stack", "px4-own", "airframe", "pulses", "rs", "share", "forget", "roll",
              "thrust", "hover", "0", "tabs BUTTON", " TEXTAREA"]
     places = [next((k for k, name in enumerate(reached) if want == name), None) for want in order]
     assert None not in places and places == sorted(places), f"{list(zip(order, places))} of {reached}"
