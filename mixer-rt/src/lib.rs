@@ -8,6 +8,21 @@
 //! `tables::mix`. What firmware handles is documented here. What the generated module needs is in
 //! `tables`, which is hidden: it changes with the compiler, and generated code asserts its format.
 //!
+//! ```
+//! use mixer_rt::{SetpointError, Wrench};
+//!
+//! // The module that `mixer_macros::airframe!("airframes/isae-x8.toml");` makes.
+//! # include!(concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/golden/isae-x8.rs"));
+//! fn main() -> Result<(), SetpointError> {
+//!     let setpoint = Wrench { roll_nm: 0.5, thrust_n: 31.4, ..Wrench::default() };
+//!     let mix = isae_x8::mix(&setpoint, 14.8)?; // at 14.8 V
+//!     assert!(mix.throttle.iter().all(|throttle| (0.1..=1.0).contains(throttle)));
+//!     assert!((mix.achieved.roll_nm - 0.5).abs() < 0.001);
+//!     assert!(!mix.saturation.any_axis());
+//!     Ok(())
+//! }
+//! ```
+//!
 //! ```text
 //! setpoint u = [roll, pitch, yaw, thrust]                                           wrench.rs
 //!   -> factors of voltage and density                                                    conditions.rs
