@@ -143,6 +143,8 @@ def test_tables_with_names_are_read_by_them(mixer):
     assert np.array_equal(mixer.mix(with_volts).throttles, expected)
     with pytest.raises(coaxial_mixer.MixerError, match="volts is given, and the table has voltage_v"):
         mixer.mix(with_volts, volts=15.0)
+    with pytest.raises(coaxial_mixer.MixerError, match="columns of different lengths: roll_nm 3, pitch_nm 2"):
+        mixer.mix({**shuffled, "roll_nm": [0.0] * 3, "pitch_nm": [0.0] * 2, "yaw_nm": [0.0] * 3, "thrust_n": [9.0] * 3})
     names = [f"throttle_{k}" for k in range(mixer.rotors)]
     backwards = Frame({name: expected[:, k] for k, name in reversed(list(enumerate(names)))})
     assert np.array_equal(mixer.wrench(backwards), mixer.wrench(expected))
