@@ -72,7 +72,7 @@ pub(super) fn drawn() -> Result<String, String> {
             ("fitted", "fitted"),
             ("mix", "`mix`"),
             ("mix_dynamic", "`mix_dynamic`"),
-            ("mix_dynamic, loop gain", "the same at the fitted loop gain"),
+            ("mix_dynamic, loop gain", "at the loop gain of the fitted"),
         ],
     )
 }

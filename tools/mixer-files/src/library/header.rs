@@ -171,9 +171,12 @@ impl Header<'_> {
         let known = kinds
             .filter(|of| !of.is_estimated)
             .map(|of| float(of.lag_s as f32));
-        let lag = known
-            .take(1)
-            .map(|lag_s| format!("#define {}_ROTOR_LAG_S {lag_s} /* in hover, of the first kind of unit */\n", self.airframe.prefix()));
+        let lag = known.take(1).map(|lag_s| {
+            format!(
+                "#define {}_ROTOR_LAG_S {lag_s} /* in hover, of the first kind of unit */\n",
+                self.airframe.prefix()
+            )
+        });
         let values: [(&str, &dyn Display); 3] = [
             ("LAG", &lag.collect::<String>()),
             ("M", &self.airframe.module),

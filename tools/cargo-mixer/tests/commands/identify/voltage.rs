@@ -103,8 +103,14 @@ fn thrust_alone_leaves_the_table_to_be_completed() {
     let thrust = &table["rotor"][0]["thrust_n"];
     let full: f64 = (0..3).map(|k| thrust[k].as_float().unwrap()).sum();
     let reference = alone.reference_v.expect("a reference");
-    assert!((full / (9.0 * libm::pow(reference / 14.8, 1.7)) - 1.0).abs() < 1e-3, "{text}");
-    assert!(!table.contains_key("voltage") && text.contains("# thrust_exponent = 1.7"), "{text}");
+    assert!(
+        (full / (9.0 * libm::pow(reference / 14.8, 1.7)) - 1.0).abs() < 1e-3,
+        "{text}"
+    );
+    assert!(
+        !table.contains_key("voltage") && text.contains("# thrust_exponent = 1.7"),
+        "{text}"
+    );
 
     // Beside a pair an incomplete table would make the airframe invalid.
     let files = [vec![map("a.csv", 14.8, 0.0, 1)], single].concat();

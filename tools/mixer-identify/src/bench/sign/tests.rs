@@ -23,7 +23,7 @@ fn samples(a: f64, b: f64) -> Vec<Sample> {
         voltage: [f64::NAN; 2],
         power_w: f64::NAN,
         speed: [f64::NAN; 2],
-            time_s: f64::NAN,
+        time_s: f64::NAN,
     };
     [(0.2, 0.8), (0.8, 0.2), (0.5, 0.5), (0.9, 0.9), (0.2, 0.3)]
         .map(|(u, l)| at(u, l))
