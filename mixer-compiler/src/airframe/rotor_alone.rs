@@ -66,7 +66,7 @@ pub(super) struct Whose {
     pub(super) torque_help: &'static str,
 }
 
-const TORQUE_HELP: &str = "torque is positive where the lower rotor outweighs the upper; it is the upper one that turns in `[pair.lower_out]`";
+const TORQUE_HELP: &str = "torque is positive where the lower rotor outweighs the upper; in `[pair.lower_out]` the upper rotor turns, in `[pair.upper_out]` the lower";
 
 /// Of `[pair.lower_out]`.
 pub(super) const UPPER: Whose = Whose {
