@@ -108,7 +108,11 @@ fn faults_are_complete() {
             .map(|record| (record.line, record.column))
             .collect();
         if !lines.is_sorted() {
-            writeln!(complaints, "{name}: errors are not in the order of places: {lines:?}").unwrap();
+            writeln!(
+                complaints,
+                "{name}: errors are not in the order of places: {lines:?}"
+            )
+            .unwrap();
         }
     }
     assert!(complaints.is_empty(), "\n{complaints}");
