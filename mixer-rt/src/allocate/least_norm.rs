@@ -39,7 +39,7 @@ impl<K: Kinds, S: AllocationMethod, const VERTICAL: bool> Frame<'_, '_, K, S, VE
     /// Writes the throttles of least norm, or near by where a unit cannot give its efforts. True where
     /// all can.
     #[inline(never)]
-    pub(super) fn serve_by_least_norm(&self, wrench: &[f32; 4], units: &mut [UnitState]) -> bool {
+    fn serve_by_least_norm(&self, wrench: &[f32; 4], units: &mut [UnitState]) -> bool {
         let mut is_served = true;
         for (index, (state, unit)) in rolled(units.iter_mut().zip(self.tables.units).enumerate()) {
             state.efforts = self.least_norm(unit, wrench);

@@ -107,14 +107,10 @@ impl<K: Kinds, S: AllocationMethod, const VERTICAL: bool> Frame<'_, '_, K, S, VE
                 }
             }
         }
-        let mut is_served = true;
         for (index, unit) in rolled(units.iter_mut().enumerate()) {
             let [f, q] = unit.slopes[0];
             unit.efforts = [unit.efforts[0] + b * f, unit.efforts[1] + b * q];
-            is_served &= self.invert(index, unit);
-        }
-        if !is_served {
-            self.serve_by_least_norm(wrench, units);
+            self.invert(index, unit);
         }
     }
 }
