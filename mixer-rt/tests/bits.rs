@@ -9,7 +9,7 @@ use mixer_rt::tables::Airmode;
 
 /// Digests with none, one and two rotors out. Where a change of bits is meant, the test prints what
 /// belongs here.
-const X8: [u64; 3] = [0x90821a6853dbf632, 0xe704839ac433d27c, 0xf93c6e4ac7920467];
+const X8: [u64; 3] = [0x90821a6853dbf632, 0xe704839ac433d27c, 0x98a6e2ca389f927f];
 const TILTED: [u64; 3] = [0x01f2c526cf073a7b, 0x0af1e3a3b1076167, 0x6bfa948b5d6719f2];
 
 /// The same with all rotors: with a reserve, which empties the ranges of the null space near the corners, and with a
