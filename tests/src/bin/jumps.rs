@@ -17,6 +17,9 @@ struct Arguments {
     /// Lines of 1,200 requests through every frame
     #[arg(long, default_value_t = 20)]
     lines: usize,
+    /// Lines along the limits in place of lines between requests
+    #[arg(long)]
+    along_limits: bool,
     /// Every step with its requests
     #[arg(long)]
     verbose: bool,
@@ -39,11 +42,12 @@ fn main() -> ExitCode {
         for number in 0..FRAMES {
             let (frame, health) = class.draw(&mut random, &pairs);
             for _ in 0..arguments.lines {
-                jumps.follow(&frame, health, &mut random, |step, [before, after]| {
+                let seen = |step: f32, [before, after]: [[f32; 4]; 2]| {
                     if arguments.verbose {
                         println!("frame {number}, {health:?}: {step:.3} from {before:?} to {after:?}");
                     }
-                });
+                };
+                jumps.follow(&frame, health, &mut random, arguments.along_limits, seen);
             }
         }
         println!("| {} | {jumps} |", class.name);

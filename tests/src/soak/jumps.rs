@@ -1,5 +1,8 @@
 //! How often throttles step where the request moves on by little: along straight lines of requests through frames drawn
 //! class by class, which shows jumps that pairs of neighbours meet only now and then. `cargo jumps` prints the table.
+//!
+//! Lines between drawn requests cross the limits; lines along them graze the limit of one row while another is cut, where the
+//! interior point method converges worst.
 
 use std::fmt;
 
@@ -21,6 +24,10 @@ const NEXT: f64 = 1e-4;
 
 /// Share of all thrust at which level flight has to be there with the rotors that are out.
 const LEVEL: f64 = 0.4;
+
+/// Of a line along the limits: how far its ends are apart, by authorities, and how far off the limits it is at most.
+const APART: f64 = 0.1;
+const OFF: f64 = 0.01;
 
 /// A step that amplifies a controller's noise.
 const STEP: f32 = 0.02;
@@ -165,12 +172,13 @@ pub struct Jumps {
 }
 
 impl Jumps {
-    /// Goes along a drawn line; tells each step to `seen`, with the requests before and after.
+    /// Goes along a drawn line, `along_limits` or across them; tells each step to `seen`, with the requests before and after.
     pub fn follow(
         &mut self,
         frame: &Frame,
         health: Health,
         random: &mut Random,
+        along_limits: bool,
         mut seen: impl FnMut(f32, [[f32; 4]; 2]),
     ) {
         let mut draw = Draw {
@@ -180,6 +188,12 @@ impl Jumps {
         };
         let [from, to] = [draw.moderate(), draw.moderate()].map(|request| request.wrench);
         let mut request = draw.moderate();
+        let ends = if along_limits {
+            ends_along_limits(frame, &request, draw.random)
+        } else {
+            Some([from, to])
+        };
+        let Some([from, to]) = ends else { return };
         let size = |wrench: &[f32; 4]| -> f64 {
             let shares = (0..4).map(|axis| f64::from(wrench[axis]) / frame.size(axis));
             shares.map(|share| share * share).sum::<f64>().sqrt()
@@ -204,6 +218,25 @@ impl Jumps {
             }
         }
     }
+}
+
+/// What the mixer makes of a request and of one beside it, a little more or less, with one row as it was asked, or none: a line
+/// through both grazes the limits of the others.
+fn ends_along_limits(frame: &Frame, request: &Request, random: &mut Random) -> Option<[[f32; 4]; 2]> {
+    let mut moved = *request;
+    for (axis, value) in moved.wrench.iter_mut().enumerate() {
+        *value += (frame.size(axis) * random.uniform(-APART, APART)) as f32;
+    }
+    let asked_axis = random.below(5);
+    let factor = 1.0 + random.uniform(-OFF, OFF);
+    let end = |request: &Request| {
+        let achieved = request.mix(frame).ok()?.achieved;
+        Some(std::array::from_fn(|axis| match axis == asked_axis {
+            true => request.wrench[axis],
+            false => (factor * achieved[axis]) as f32,
+        }))
+    };
+    Some([end(request)?, end(&moved)?])
 }
 
 /// The largest step of a throttle in a part of the way from one wrench to the next.
