@@ -141,7 +141,7 @@ def test_motors_are_those_of_the_stack(desk):
     for picture in ["#hovering", "#top"]:
         numbers = sorted(int(re.match(r"\d+", text)[0]) for text in desk.see(f"{picture} text").all_text_contents())
         assert numbers == list(range(1, 9))
-    desk.shows(".counted", "Motors as PX4 counts them: motor 1 is output 0").shows("#report #layout", "motor 1 is output 0")
+    desk.shows(".counted", "Motors as PX4 counts them: motor 1 is output 0").shows("#report #layout", "Motor 1 is output 0")
     assert desk.see("#bench-check .outputs th[scope=row]").all_text_contents() == [str(k) for k in range(1, 9)]
     desk.page.select_option("#stack", "own")
     desk.still().shows(".counted", "from 0")
