@@ -174,7 +174,9 @@ fn assert_attitude_is_kept(frame: &Frame, request: &Request) {
     let missed: Vec<f64> = (0..4)
         .map(|axis| (f64::from(request.wrench[axis]) - answer.achieved[axis]).abs())
         .collect();
-    let is_kept = |axis: usize| missed[axis] <= 0.501 * f64::from(request.wrench[axis].abs()) + 0.01;
+    let is_kept = |axis: usize| {
+        missed[axis] <= 0.501 * f64::from(request.wrench[axis].abs()) + 0.003 * frame.size(axis)
+    };
     assert!(
         is_kept(0) && is_kept(1) && missed[3] < 0.002 * frame.size(3),
         "{request:?} -> {answer:?}"
