@@ -146,7 +146,7 @@ impl Airframe {
                     let [f, q] = own.factors(to);
                     // Torque times speed; the speed is as the root of thrust over density.
                     let density = if unit == "V" { 1.0 } else { to / own.reference };
-                    for (by, factor) in by.iter_mut().zip([f, q, f * (f / density).sqrt()]) {
+                    for (by, factor) in by.iter_mut().zip([f, q, q * (f / density).sqrt()]) {
                         *by *= factor;
                     }
                     let off = by_voltage(EXPONENT_DEVIATION, own.reference, to);

@@ -173,7 +173,13 @@ fn refusal(source: &Source, message: &str, span: Span) -> proc_macro2::TokenStre
                 const NAME: &'static str = "";
                 const UNITS: usize = UNITS;
                 const CHANNELS: usize = CHANNELS;
+                const THROTTLE: [f32; 2] = [THROTTLE_MIN, THROTTLE_MAX];
+                const VOLTAGES: [f32; 2] = [MIN_V, MAX_V];
+                const REFERENCE_V: f32 = REFERENCE_V;
+                const REFERENCE_DENSITY_KG_M3: f32 = REFERENCE_DENSITY_KG_M3;
                 const SCALE: ::mixer_rt::Wrench = SCALE;
+                const ARDUPILOT_SCALE: ::mixer_rt::Wrench = SCALE;
+                const BETAFLIGHT_SCALE: ::mixer_rt::Wrench = SCALE;
                 type Mix = ::mixer_rt::Mix<CHANNELS>;
                 #of_type
             }

@@ -1,21 +1,19 @@
 //! The tables of an airframe file as TOML, with what there is to say of each in comments.
 
-use mixer_compiler::airframe::{Basis, TYPICAL_EXPONENT, Uncertainty};
+use mixer_compiler::airframe::TYPICAL_EXPONENT;
 use std::fmt::Write as _;
 
 use mixer_compiler::diagnostic::{self, printable};
-use toml_edit::{ArrayOfTables, DocumentMut, Item, value};
+use toml_edit::{DocumentMut, value};
 
 use super::bench::{Bench, BenchKind};
-use super::fit::basis::ThrottleBox;
 use super::fit::power::{LeastPower, Power};
 use super::fit::{Fit, hundredths};
 use super::identified::Identified;
-use super::rotor::Turning;
 use super::rotor::predict::Predicted;
 use super::statement::{Detail, Statement, of_identified, of_predicted, runs};
 use super::statistics::extent;
-use super::table::{self, commented, numbers, table, texts};
+use super::table::{commented, curves, model, numbers, pair, table};
 
 /// The key of the torque of least power. Which airframe it is decides whether that saves anything,
 /// so that it stands in a comment.
@@ -112,57 +110,6 @@ const SIGN: &str = "# Torque is positive where the lower rotor outweighs the upp
 
 const MEASURED: &str = "# The voltage of the flight must be measured where the bench's was: at the same point of the wiring, under load.\n\
                         # Behind other leads, or at no load, k is wrong by what the voltage drops in between.\n";
-
-/// `[throttle]`, and `[pair]` or `[[rotor]]`, with what stands above a table by its name.
-pub(crate) fn model(
-    about: &dyn Fn(&str) -> String,
-    ThrottleBox { min, max }: ThrottleBox,
-    name: &str,
-    mut entries: Vec<(&str, Item)>,
-    uncertainty: Option<&Uncertainty>,
-    options: &[String],
-) -> DocumentMut {
-    entries.extend(uncertainty.map(|of| ("uncertainty", table::uncertainty(of))));
-    if !options.is_empty() {
-        entries.push(("bench_options", texts(options)));
-    }
-    let mut document = DocumentMut::new();
-    document.insert(
-        "throttle",
-        table(&about("throttle"), [("min", value(min)), ("max", value(max))]),
-    );
-    let own = match table(&about(name), entries) {
-        Item::Table(own) if name == "rotor" => Item::ArrayOfTables(ArrayOfTables::from_iter([own])),
-        own => own,
-    };
-    document.insert(name, own);
-    document
-}
-
-/// What `[pair]` has, with its rotors alone.
-pub(crate) fn pair(
-    about: &dyn Fn(&str) -> String,
-    basis: Basis,
-    [thrust_n, torque_nm]: [Item; 2],
-    lower_is_stronger: bool,
-    alone: impl Iterator<Item = (Turning, [[f64; 3]; 2])>,
-) -> Vec<(&'static str, Item)> {
-    let mut entries = vec![
-        ("basis", value(basis.name())),
-        ("thrust_n", thrust_n),
-        ("torque_nm", torque_nm),
-        ("upper_spin", value("cw")),
-    ];
-    if lower_is_stronger {
-        entries.push(("stronger", value("lower")));
-    }
-    entries.extend(alone.map(|(turning, of)| (turning.key(), table(&about(turning.table()), curves(of)))));
-    entries
-}
-
-fn curves([thrust_n, torque_nm]: [[f64; 3]; 2]) -> [(&'static str, Item); 2] {
-    [("thrust_n", numbers(thrust_n)), ("torque_nm", numbers(torque_nm))]
-}
 
 /// Least and greatest voltage of the rows of the model, V.
 fn rows_v(id: &Identified) -> Option<[f64; 2]> {

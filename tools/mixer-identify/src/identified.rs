@@ -11,14 +11,13 @@ use crate::fit::basis::ThrottleBox;
 use crate::fit::hundredths;
 use crate::fit::pair::{self, Pair, names};
 use crate::fit::power::{self, Power};
-use crate::fit::voltage::{self, Exponent, Voltage};
+use crate::fit::voltage::{self, Exponent, Voltage, bench_range, in_pack};
 use crate::fit::wishes::FitOptions;
 use crate::numbers;
 use crate::refusal::Refusal;
 use crate::rotor::Turning;
 use crate::rotor::alone;
-use crate::rotor::predict::{Out, UNMEASURED_TORQUE};
-use crate::rotor::single::{RunFacts, Single};
+use crate::rotor::single::{Out, RunFacts, Single, UNMEASURED_TORQUE};
 use crate::statistics::extent;
 
 /// Everything that decides an identification, besides the files.
@@ -258,17 +257,6 @@ fn reference(
 /// How many times beyond the measured voltages a reference may be: a pack of twice the cells.
 const FAR: f64 = 2.0;
 
-/// Refuses a pack whose voltages leave out the bench's: `[voltage]` holds around its reference.
-pub(crate) fn in_pack(reference_v: Option<f64>, pack_v: Option<[f64; 2]>) -> Result<(), Refusal> {
-    match (reference_v, pack_v) {
-        (Some(reference), Some([low, high])) if !(low..=high).contains(&reference) => Err(Refusal::general(
-            format!("the pack has {low:.1} to {high:.1} V, the bench had {reference:.2} V"),
-            "the cells and chemistry of the pack that the rotors were measured for, or --reference-voltage within its range",
-        )),
-        _ => Ok(()),
-    }
-}
-
 /// Refuses pairs whose rotors have the same throttle throughout.
 fn two_signals(benches: &[Bench]) -> Result<(), Refusal> {
     let pairs = benches.iter().filter(|bench| bench.kind == BenchKind::Pair);
@@ -419,13 +407,6 @@ fn sag(benches: &[Bench], voltage: &Voltage) -> Option<String> {
              rows to one voltage and writes [voltage]"
         ),
     })
-}
-
-/// A warning of a `range_v` that is not the pack's.
-pub(crate) fn bench_range([low, high]: [f64; 2]) -> String {
-    format!(
-        "range_v is {low:.2}..{high:.2} V, what the bench had, and a voltage outside is clamped: --cells N gives the pack's"
-    )
 }
 
 fn voltage_warnings(voltage: &Voltage, pack_is_known: bool) -> Vec<String> {

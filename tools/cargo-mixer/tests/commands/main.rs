@@ -147,6 +147,10 @@ fn the_quick_start_runs() {
     for line in block.lines() {
         let command = line.split('#').next().unwrap();
         let mut words: Vec<String> = command.split_whitespace().map(str::to_owned).collect();
+        // The whole tests, of which this is one.
+        if words[..] == ["tests/run", "--install"] {
+            continue;
+        }
         assert_eq!(words[..2], ["cargo", "mixer"], "{line}");
         if let Some(place) = words.iter().position(|word| word == "-o") {
             words[place + 1] = folder.join(&words[place + 1]).display().to_string();

@@ -23,6 +23,7 @@ use self::profile::{Regressors, profile};
 use crate::bench::{Bench, BenchKind, Point};
 use crate::fit::basis::Centred;
 use crate::fit::range;
+use crate::refusal::Refusal;
 use crate::statistics::{dot, extent, rms};
 
 mod exponent;
@@ -261,6 +262,24 @@ fn joint(rows: &[Row], kind: BenchKind, reference: f64) -> Result<Option<Estimat
         method: "joint map",
         ..e
     }))
+}
+
+/// Refuses a pack whose voltages leave out the bench's: `[voltage]` holds around its reference.
+pub(crate) fn in_pack(reference_v: Option<f64>, pack_v: Option<[f64; 2]>) -> Result<(), Refusal> {
+    match (reference_v, pack_v) {
+        (Some(reference), Some([low, high])) if !(low..=high).contains(&reference) => Err(Refusal::general(
+            format!("the pack has {low:.1} to {high:.1} V, the bench had {reference:.2} V"),
+            "the cells and chemistry of the pack that the rotors were measured for, or --reference-voltage within its range",
+        )),
+        _ => Ok(()),
+    }
+}
+
+/// A warning of a `range_v` that is not the pack's.
+pub(crate) fn bench_range([low, high]: [f64; 2]) -> String {
+    format!(
+        "range_v is {low:.2}..{high:.2} V, what the bench had, and a voltage outside is clamped: --cells N gives the pack's"
+    )
 }
 
 #[cfg(test)]

@@ -16,18 +16,17 @@ use crate::bench::{Bench, BenchKind, is_one_signal, mean_voltage};
 use crate::fit::balance::throttles;
 use crate::fit::basis::ThrottleBox;
 use crate::fit::fold::{CLEAR, lower_ends};
+use crate::fit::voltage::{bench_range, in_pack};
 use crate::fit::{Design, ten_digits};
-use crate::fragment::{model, pair};
-use crate::identified::{bench_range, in_pack};
 use crate::refusal::Refusal;
 use crate::rotor::Turning;
 use crate::rotor::agreement::agreed;
 use crate::rotor::curve::Rotor;
 use crate::rotor::interaction::{CLOSED_LOOP, Interaction, OPEN_LOOP};
 use crate::rotor::posterior::{BETWEEN_SYSTEMS, Case, Posterior, ROW, fit, scaled};
-use crate::rotor::single::{Single, exponents_in_words};
+use crate::rotor::single::{Out, Single, UNMEASURED_TORQUE, exponents_in_words};
 use crate::statistics::{greatest, rms};
-use crate::table::commented;
+use crate::table::{commented, model, pair};
 
 /// z/D where the user does not say: spacing matters little (docs/no-bench.md).
 pub const SPACING_RATIO: f64 = 0.25;
@@ -57,8 +56,6 @@ pub const ENOUGH_ROWS: usize = 16;
 const PREDICTED: [f64; 2] = [1.5, 3.7];
 const FEW_ROWS: [f64; 2] = [1.5, 2.4];
 const WITHOUT_TORQUE: [f64; 2] = [0.0, UNMEASURED_TORQUE];
-/// A torque that was not measured, % of full scale.
-pub(crate) const UNMEASURED_TORQUE: f64 = 2.0;
 /// Rows with torque that a correction of it takes.
 const CORRECTING_ROWS: usize = 4;
 
@@ -131,15 +128,6 @@ pub struct PredictedPair {
     pub uncertainty: Uncertainty,
     /// What the basis misses of the model, rms, % of the greatest thrust and torque.
     pub misfit_percent: [f64; 2],
-}
-
-/// One rotor alone, with the signs of the airframe file.
-#[derive(Debug, Clone, Copy, Serialize)]
-pub struct Out {
-    /// Of thrust, N.
-    pub thrust_n: [f64; 3],
-    /// Of torque, N m.
-    pub torque_nm: [f64; 3],
 }
 
 /// Predicts the pair of a rotor, or of two that differ; rows of the pair move the constants.
@@ -483,21 +471,6 @@ fn one_pair(pair: &PredictedPair) -> String {
          [allocation]\naxes = [\"yaw\", \"thrust\"]\n",
         pair.tables(&|_| String::new(), &[])
     )
-}
-
-impl Out {
-    /// Thrust and torque.
-    pub(crate) fn both(self) -> [[f64; 3]; 2] {
-        [self.thrust_n, self.torque_nm]
-    }
-
-    /// Of a rotor with this sign of its torque, in ten digits.
-    pub(crate) fn of(rotor: Rotor, sign: f64) -> Out {
-        Out {
-            thrust_n: rotor.thrust.0.map(ten_digits),
-            torque_nm: rotor.torque.0.map(|c| ten_digits(sign * c)),
-        }
-    }
 }
 
 impl PredictedPair {

@@ -4,7 +4,7 @@ use mixer_compiler::airframe::TYPICAL_EXPONENT;
 use serde::Serialize;
 
 use crate::bench::{Bench, BenchKind, Point, equal_commands, mean_voltage};
-use crate::fit::distinct_pairs;
+use crate::fit::{distinct_pairs, ten_digits};
 use crate::numbers::{self, Anomaly};
 use crate::refusal::Refusal;
 use crate::rotor::curve::{Curve, Rotor};
@@ -24,6 +24,33 @@ const MISFIT: [f64; 2] = [0.02, 0.06];
 const SAME: f64 = 0.002;
 /// Torque per thrust over diameter, where torque was not measured. Six runs of 11 to 22 inch.
 pub const KAPPA_PER_DIAMETER: f64 = 0.048;
+
+/// A torque that was not measured, % of full scale.
+pub(crate) const UNMEASURED_TORQUE: f64 = 2.0;
+
+/// One rotor alone, with the signs of the airframe file.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct Out {
+    /// Of thrust, N.
+    pub thrust_n: [f64; 3],
+    /// Of torque, N m.
+    pub torque_nm: [f64; 3],
+}
+
+impl Out {
+    /// Thrust and torque.
+    pub(crate) fn both(self) -> [[f64; 3]; 2] {
+        [self.thrust_n, self.torque_nm]
+    }
+
+    /// Of a rotor with this sign of its torque, in ten digits.
+    pub(crate) fn of(rotor: Rotor, sign: f64) -> Out {
+        Out {
+            thrust_n: rotor.thrust.0.map(ten_digits),
+            torque_nm: rotor.torque.0.map(|c| ten_digits(sign * c)),
+        }
+    }
+}
 
 /// What the user knows of a run beside its file.
 #[derive(Debug, Clone, Copy)]
