@@ -97,7 +97,9 @@ fn pages_are_well_formed_and_complete() {
         // Four sections are of pairs.
         let of_pairs = if compiled.airframe.pairs.is_empty() { 7 } else { 11 };
         assert!(
-            anchors.len() == of_pairs + has_single && anchors[0] == "layout" && anchors.last() == Some(&"matrices"),
+            anchors.len() == of_pairs + has_single
+                && anchors[0] == "layout"
+                && anchors.last() == Some(&"matrices"),
             "{name}: {anchors:?}"
         );
         for (id, section) in &sections {

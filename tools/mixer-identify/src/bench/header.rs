@@ -274,7 +274,8 @@ impl Columns {
             let of_upper = lower.as_ref().map_or("", |_| " of the upper rotor");
             lacks.push((format!("no throttle column{of_upper}"), mend));
         }
-        if !self[Quantity::Thrust].any() && !(by_hand.speed_serves && self[Quantity::Speed].any()) {
+        let serves = self[Quantity::Thrust].any() || by_hand.speed_serves && self[Quantity::Speed].any();
+        if !serves {
             lacks.push(("no thrust column".to_owned(), named("thrust", "HEADER")));
         }
     }

@@ -277,7 +277,10 @@ fn exponents_of_the_pairs_at_two_voltages() {
     // Two rotors under one command are noticed.
     let mixed = ["a1_7.csv", "a1_11.csv", "h6_7.csv", "h6_11.csv"].map(|n| folder.join(n));
     let error = identify(&mixed, &settings).unwrap_err()[0].to_string();
-    assert!(error.contains("two propellers or voltages in one table"), "{error}");
+    assert!(
+        error.contains("two propellers or voltages in one table"),
+        "{error}"
+    );
 }
 
 #[test]
