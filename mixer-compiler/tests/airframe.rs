@@ -305,7 +305,7 @@ fn kinds_are_brought_to_the_frame_s_references() {
     };
     let one = frame(&pair(""), &rotor(&own("rotor", 15.5, 1.1)), 14.0, 1.2);
     let other = frame(&pair(&own("pair", 14.0, 1.2)), &rotor(""), 15.5, 1.1);
-    let by = [(1.75, 0.75), (1.8, 0.8)].map(|(v, rho)| (14.0_f64 / 15.5).powf(v) * (1.2_f64 / 1.1).powf(rho));
+    let by = [(1.75, 0.75), (1.8, 0.8)].map(|(v, rho)| libm::pow(14.0 / 15.5, v) * libm::pow(1.2 / 1.1, rho));
     let same = |found: &[f64], wanted: &[f64], factor: f64| {
         for (found, wanted) in found.iter().zip(wanted) {
             assert!(
@@ -332,8 +332,14 @@ fn kinds_are_brought_to_the_frame_s_references() {
         assert!((k[0] * by[0] / l[0] - 1.0).abs() < 1e-12 && (k[1] * by[1] / l[1] - 1.0).abs() < 1e-12);
     }
     // What the exponent may be off widens the uncertainty, in tenths, up.
-    let off = by_voltage(EXPONENT_DEVIATION, 14.0, 15.5).hypot(by_voltage(EXPONENT_DEVIATION, 1.2, 1.1));
+    let off = libm::hypot(
+        by_voltage(EXPONENT_DEVIATION, 14.0, 15.5),
+        by_voltage(EXPONENT_DEVIATION, 1.2, 1.1),
+    );
     let [own, brought] = [a, b].map(|pair| pair.measured.uncertainty.unwrap().thrust_percent);
-    assert_eq!([own, brought], [1.5, (10.0 * off.hypot(1.5)).ceil() / 10.0]);
+    assert_eq!(
+        [own, brought],
+        [1.5, (10.0 * libm::hypot(off, 1.5)).ceil() / 10.0]
+    );
     assert!(off > 0.4, "{off}");
 }
