@@ -184,8 +184,7 @@ impl OwnCurve {
             let throttles: Vec<f64> = spins.iter().map(throttle).collect();
             physics.wrench(&throttles, [1.0; 2], Health::GOOD)[3]
         };
-        let error = |percent: &u32| {
-            let a = f64::from(*percent) / 100.0;
+        let error = |a: f64| {
             let level_n = change(a, 0.0, 1.0);
             let largest = (LARGEST_RISE * hover).min(1.0 - hover);
             let rises = (1..=RISES).map(|k| largest * f64::from(k) / f64::from(RISES));
@@ -193,8 +192,10 @@ impl OwnCurve {
                 rises.flat_map(|rise| [1.0, -1.0].map(|sense| change(a, rise, sense) / level_n - 1.0));
             changes.map(|change| change * change).sum::<f64>()
         };
-        let best = (0..=100).min_by(|a, b| error(a).total_cmp(&error(b)));
-        best.map_or(0.0, |percent| f64::from(percent) / 100.0)
+        let tried = (0..=100)
+            .map(|percent| f64::from(percent) / 100.0)
+            .map(|a| (error(a), a));
+        tried.min_by(|a, b| a.0.total_cmp(&b.0)).map_or(0.0, |(_, a)| a)
     }
 
     /// The share of the largest thrust that the mixer asks for in hover, by a factor of its curve.
