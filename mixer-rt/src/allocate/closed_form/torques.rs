@@ -26,7 +26,7 @@ impl ClosedForm<'_> {
         }
         let missing = yaw - given;
         let end = if missing < 0.0 { reach[0] } else { reach[1] };
-        // Zero where there is no room.
+        // From 0 to 1, as `yaw` is within `reach`, which is the sum of the same limits; 0 where there is no room.
         let part = quotient(missing, end - given);
         for ((unit, effort), line) in rolled(self.units.iter().zip(efforts).zip(lines)) {
             let p = effort.torque;
