@@ -12,66 +12,44 @@ use mixer_compiler::Compiled;
 use mixer_compiler::airframe::Basis;
 use mixer_compiler::tables::ClosedFormTable;
 
-/// Checks, a correction of voltage or of density, and each piece of its table.
-const PER_MIX: u32 = 240;
-const PER_CORRECTION: u32 = 70;
-const PER_PIECE: u32 = 10;
+/// Checks, a request brought down to what products do not overflow with; a correction of voltage or of density,
+/// and each piece of its table.
+const MIX: u32 = 330;
+const CORRECTION: u32 = 70;
+const PIECE: u32 = 10;
 
-/// A request brought down to what products do not overflow with.
-const LIMITED: u32 = 70;
-
-/// One unit's least norm, its throttles written, and its share of the achieved wrench.
-const PER_UNIT: u32 = 90;
-
-/// One unit of an attempt next to the border: its throttles written, its efforts compared.
-const ATTEMPT_UNIT: u32 = 45;
+/// One unit beside its inverse and forward map: least norm twice, its throttles, its share of the achieved wrench.
+const UNIT: u32 = 240;
+const FORWARD: u32 = 75;
 
 /// A step of the facets' linear programme, and one pair of facets in it.
 const STEP: u32 = 30;
 const FACETS: u32 = 18;
 
-/// The range of the null space, one unit.
-const NULL_RANGE: u32 = 40;
-
-/// How far yaw reaches: a call, and one unit in it. Calls at the start, where yaw is extended, and where it
-/// is bounded.
+/// How far yaw reaches: a call, and one unit in it. Calls at the start and where yaw is bounded, where it is extended,
+/// and for a reserve.
 const REACH: u32 = 35;
 const REACH_UNIT: u32 = 45;
+const REACHES: u32 = 7;
 const EXTENDED: u32 = 3;
-const BOUNDED: u32 = 6;
+const RESERVED: u32 = 12;
 
-/// The outlines' top: one unit's knots, one knot passed, and one unit in that.
+/// The outlines' top: one unit's knots, one knot passed, and one unit in that. A reserve looks for it twice.
 const KNOTS: u32 = 75;
 const KNOT: u32 = 30;
 const KNOT_UNIT: u32 = 7;
 
-/// Additional work for a reserve of yaw: rounds, and calls in one of them for how far yaw reaches.
-const RESERVE_ROUNDS: u32 = 2;
-const RESERVE_REACHES: u32 = 6;
-
-/// The torques, one unit.
-const TORQUES: u32 = 40;
-
-/// Beside the iterations: the request in rows and the targets; one unit of both.
-const CUT: u32 = 300;
-const CUT_UNIT: u32 = 115;
-
-/// An iteration with its share of the correction, and one unit in it: with vertical axes, and tilted.
-const ITERATION: u32 = 480;
-const ITERATION_UNIT: [u32; 2] = [355, 420];
-
-/// The pair of a unit looked up among several, in least norm or in an iteration.
+/// An iteration with its share of what is around it, one unit in it, what tilted axes, a quartic or several kinds add
+/// to that; a slack of the request.
+const ITERATION: u32 = 490;
+const ITERATION_UNIT: u32 = 360;
+const TILTED: u32 = 65;
+const QUARTIC: u32 = 45;
 const KIND: u32 = 25;
+const SLACK: u32 = 60;
 
-/// The throttle of a single rotor found apart.
-const SINGLE_APART: u32 = 350;
-
-/// A slack of the request in all iterations: that of a reserve, and that of yaw beyond the request with rotors out.
-const SLACK: u32 = MOST_ITERATIONS * 60;
-
-/// Least norm with rotors alone beside that of whole pairs, and one unit in it that has one.
-const ROTORS_ALONE: u32 = 1000;
-const ROTOR_ALONE: u32 = 800;
+/// A unit of one rotor or none in least norm, and what is done once where there is one.
+const ALONE: u32 = 1000;
 
 /// The bound for a compiled airframe while all rotors turn; `None` for an evaluator that has not been
 /// counted.
@@ -99,74 +77,49 @@ fn general(compiled: &Compiled, alone: usize, is_out: bool) -> Option<u32> {
 fn least_norm(compiled: &Compiled, alone: usize) -> Option<u32> {
     let airframe = &compiled.airframe;
     let pair = match compiled.inverse() {
-        Some((evaluator, basis)) => {
-            evaluator.instructions(basis)? + forward(basis) + PER_UNIT + kind(compiled)
-        }
+        Some((evaluator, basis)) => evaluator.instructions(basis)? + FORWARD + UNIT,
         None => 0,
     };
-    let of_pairs = airframe.pair_units() as u32 * pair;
-    let of_alone = match alone as u32 {
-        0 => 0,
-        alone => ROTORS_ALONE + alone * ROTOR_ALONE,
-    };
-    Some(of_pairs + airframe.single_units() as u32 * SINGLE_APART + of_alone)
+    let once = u32::from(alone > 0);
+    Some(airframe.pair_units() as u32 * pair + (alone as u32 + once) * ALONE)
 }
 
 /// The interior point method: all iterations, with so many slacks beside that of a reserve.
 fn interior(compiled: &Compiled, slacks: u32) -> u32 {
-    let n = compiled.tables.units.len() as u32;
-    let unit = ITERATION_UNIT[usize::from(!compiled.tables.is_vertical)];
-    // Additional instructions for the derivatives of the basis.
-    let more = match compiled.inverse() {
-        Some((_, Basis::Quartic)) => 45,
-        Some((_, Basis::Cubic)) => 10,
-        Some((_, Basis::Biquadratic)) | None => 0,
-    };
-    let slacks = slacks + u32::from(compiled.tables.priorities.yaw_reserve_nm > 0.0);
-    MOST_ITERATIONS * (ITERATION + n * (unit + more + kind(compiled))) + slacks * SLACK + CUT + n * CUT_UNIT
-}
-
-fn kind(compiled: &Compiled) -> u32 {
-    if compiled.airframe.is_unlike() { KIND } else { 0 }
+    let tables = &compiled.tables;
+    let is_quartic = matches!(compiled.inverse(), Some((_, Basis::Quartic)));
+    let unit = ITERATION_UNIT
+        + u32::from(!tables.is_vertical) * TILTED
+        + u32::from(is_quartic) * QUARTIC
+        + u32::from(compiled.airframe.is_unlike()) * KIND;
+    let slacks = slacks + u32::from(tables.priorities.yaw_reserve_nm > 0.0);
+    MOST_ITERATIONS * (ITERATION + tables.units.len() as u32 * unit + slacks * SLACK)
 }
 
 /// Checks, and corrections of voltage and density where there are any.
 fn per_mix(compiled: &Compiled) -> u32 {
     let corrections = &compiled.tables.corrections;
     let tables = corrections.voltage.iter().chain(&corrections.air);
-    let corrections = tables.map(|table| PER_CORRECTION + PER_PIECE * table.pieces.len() as u32);
-    PER_MIX + LIMITED + corrections.sum::<u32>()
-}
-
-/// The forward map of one unit.
-fn forward(basis: Basis) -> u32 {
-    match basis {
-        Basis::Biquadratic | Basis::Cubic => 50,
-        Basis::Quartic => 75,
-    }
+    let corrections = tables.map(|table| CORRECTION + PIECE * table.pieces.len() as u32);
+    MIX + corrections.sum::<u32>()
 }
 
 fn closed_form(compiled: &Compiled, table: &ClosedFormTable) -> Option<u32> {
     let (evaluator, basis) = compiled.inverse()?;
-    let evaluator = evaluator.instructions(basis)?;
     let n = table.units.len() as u32;
-    let inverses = n * (evaluator + forward(basis));
+    let units = n * (2 * (evaluator.instructions(basis)? + FORWARD) + UNIT);
     let reach = REACH + n * REACH_UNIT;
     let step = STEP + FACETS * table.slopes.len() as u32;
     let walls = STEP + FACETS * (table.walls.len() + table.steep.len()) as u32;
-    let moved = table.units.iter().filter(|unit| unit.null != 0.0).count() as u32;
     let top = |moved: u32| n * KNOTS + moved * Outline::KNOTS as u32 * (KNOT + n * KNOT_UNIT);
-    let extended = if moved == 0 {
-        0
-    } else {
-        EXTENDED * reach + top(moved)
+    let extended = match table.units.iter().filter(|unit| unit.null != 0.0).count() as u32 {
+        0 => 0,
+        moved => EXTENDED * reach + top(moved),
     };
-    let reserve = if compiled.tables.priorities.yaw_reserve_nm > 0.0 {
-        RESERVE_ROUNDS * (RESERVE_REACHES * reach + top(n) + n * NULL_RANGE)
-    } else {
-        0
+    let reserve = match compiled.tables.priorities.yaw_reserve_nm {
+        none if none <= 0.0 => 0,
+        _ => RESERVED * reach + 2 * top(n),
     };
     let ways = (Facets::STEPS * step).max(step + extended);
-    let found = walls + ways + n * NULL_RANGE + (1 + BOUNDED) * reach + reserve + n * TORQUES;
-    Some(per_mix(compiled) + n * (PER_UNIT + ATTEMPT_UNIT) + 2 * inverses + found)
+    Some(per_mix(compiled) + units + walls + ways + REACHES * reach + reserve)
 }
