@@ -443,48 +443,8 @@ fn read(table: &DeTable<'_>, faults: &mut Vec<Diagnostic>) -> Option<Airframe> {
     if file.key_place(&PAIR).is_none() && !all_single {
         file.faults.push(file.missing(&PAIR));
     }
-    let written = file.key_place(&UNIT);
-    let is_found = || file.faults.iter().any(|fault| fault.key.starts_with("unit"));
-    if written.is_some()
-        && let Some(layout) = &layout
-    {
-        let message = format!("the file has `[layout]` and {} `[[unit]]`", units.len());
-        let fault = Diagnostic::new(Code::Conflict, "layout", layout.place.clone(), message);
-        let help = "keep one: `[layout]` for a regular frame, else `[[unit]]`";
-        file.faults
-            .push(fault.label("second description of the units").help(help));
-        return None;
-    }
-    if file.key_place(&LAYOUT).is_none() && units.is_empty() && !is_found() {
-        let code = if written.is_some() {
-            Code::WrongLength
-        } else {
-            Code::MissingKey
-        };
-        let place = written.unwrap_or(file.place());
-        let help = "add a `[[unit]]` for each pair of rotors, or a `[layout]` for a regular frame";
-        let fault = Diagnostic::new(code, "unit", place, "the airframe has 0 units");
-        file.faults.push(fault.label("no `[[unit]]`").help(help));
-        return None;
-    }
     let first_angle_deg = layout.as_ref().and_then(|layout| layout.first_angle_deg);
-    let units = match layout {
-        None => units,
-        Some(layout) => {
-            let units = layout.units?;
-            // Later stages know units alone; what they find in one is to be pointed at in the
-            // layout.
-            places.insert("unit".to_owned(), layout.place.clone());
-            for k in 0..units.len() {
-                places.insert(format!("unit[{k}]"), layout.place.clone());
-                for index in 0..2 {
-                    let written = places.get(&format!("layout.channels[{k}][{index}]")).cloned();
-                    places.extend(written.map(|place| (format!("unit[{k}].channels[{index}]"), place)));
-                }
-            }
-            units
-        }
-    };
+    let units = described(&mut file, units, layout, &mut places)?;
     // A table that was refused left its faults, so that no default takes its place.
     let units = unit::check(&units, [&pair_names, &rotor_names], &places, file.faults);
     let has_bias = |allocation: &Allocation| allocation.power_bias_nm_per_n != 0.0;
@@ -512,4 +472,51 @@ fn read(table: &DeTable<'_>, faults: &mut Vec<Diagnostic>) -> Option<Airframe> {
         first_angle_deg,
         places,
     })
+}
+
+/// The units by the one description that the file has of them, `[layout]` or `[[unit]]`.
+fn described(
+    file: &mut Fields<'_, '_>,
+    units: Vec<unit::Written>,
+    layout: Option<layout::Layout>,
+    places: &mut Places,
+) -> Option<Vec<unit::Written>> {
+    let written = file.key_place(&UNIT);
+    let is_found = || file.faults.iter().any(|fault| fault.key.starts_with("unit"));
+    if written.is_some()
+        && let Some(layout) = &layout
+    {
+        let message = format!("the file has `[layout]` and {} `[[unit]]`", units.len());
+        let fault = Diagnostic::new(Code::Conflict, "layout", layout.place.clone(), message);
+        let help = "keep one: `[layout]` for a regular frame, else `[[unit]]`";
+        file.faults
+            .push(fault.label("second description of the units").help(help));
+        return None;
+    }
+    if file.key_place(&LAYOUT).is_none() && units.is_empty() && !is_found() {
+        let code = if written.is_some() {
+            Code::WrongLength
+        } else {
+            Code::MissingKey
+        };
+        let place = written.unwrap_or(file.place());
+        let help = "add a `[[unit]]` for each pair of rotors, or a `[layout]` for a regular frame";
+        let fault = Diagnostic::new(code, "unit", place, "the airframe has 0 units");
+        file.faults.push(fault.label("no `[[unit]]`").help(help));
+        return None;
+    }
+    let Some(layout) = layout else {
+        return Some(units);
+    };
+    let units = layout.units?;
+    // Later stages know units alone; what they find in one is to be pointed at in the layout.
+    places.insert("unit".to_owned(), layout.place.clone());
+    for k in 0..units.len() {
+        places.insert(format!("unit[{k}]"), layout.place.clone());
+        for index in 0..2 {
+            let written = places.get(&format!("layout.channels[{k}][{index}]")).cloned();
+            places.extend(written.map(|place| (format!("unit[{k}].channels[{index}]"), place)));
+        }
+    }
+    Some(units)
 }
