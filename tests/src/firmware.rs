@@ -231,7 +231,16 @@ impl Toolchain {
     ) -> Result<String, String> {
         let image = elf.display();
         let (qemu, arguments) = runner.split_first().ok_or("the runner is empty")?;
-        let mut child = Command::new(qemu)
+        // On Linux QEMU ends with the program that started it, however that is stopped.
+        let mut command = match Command::new(ENDS_WITH_PARENT[0]).arg("--version").output() {
+            Ok(_) if cfg!(target_os = "linux") => {
+                let mut command = Command::new(ENDS_WITH_PARENT[0]);
+                command.args(&ENDS_WITH_PARENT[1..]).arg(qemu);
+                command
+            }
+            _ => Command::new(qemu),
+        };
+        let mut child = command
             .args(arguments)
             .arg(elf)
             .args(options)
@@ -340,6 +349,9 @@ impl Toolchain {
             .collect())
     }
 }
+
+/// util-linux's way to be told of the parent's end.
+const ENDS_WITH_PARENT: [&str; 3] = ["setpriv", "--pdeathsig", "TERM"];
 
 /// First line of `rustc --version`: release, commit and date.
 fn version(rustc: &Path) -> String {
