@@ -14,6 +14,8 @@
 //! the throttle nor when the row was written matters. What is left of all steps, by least squares, tells t; the steps, each
 //! left out in turn (the jackknife), tell its interval.
 
+use std::collections::BTreeMap;
+
 use mixer_compiler::flywheel::ohmic_share;
 use serde::Serialize;
 
@@ -71,6 +73,15 @@ const ROWS: usize = 8;
 /// Lags that are looked for, s, at so many of them in geometric order.
 const LAGS_S: [f64; 2] = [0.008, 2.0];
 const GRID: usize = 72;
+
+/// Of a flight: a part that is left out in turn, fewest and most of them; the time that the law takes to forget where it began; the
+/// longest time between rows that follow each other, s; fewest rows a second.
+const PART_S: f64 = 5.0;
+const PARTS: usize = 4;
+const MOST_PARTS: usize = 24;
+const FORGOTTEN_S: f64 = 1.0;
+const FLIGHT_GAP_S: f64 = 0.25;
+const FLIGHT_HZ: f64 = 18.0;
 
 /// Longest delay from the row of a command to the rotor, s.
 const DELAY_S: f64 = 0.1;
@@ -145,17 +156,9 @@ pub fn find(logs: &[Log], exponent: f64, throttle: f64) -> Result<RotorLag, Refu
     let preference = rows as f64 * libm::log(braking / coasting);
     let brakes = (preference.abs() > PREFERRED).then_some(preference < 0.0);
     let profiles = law.profiles(steps.iter(), brakes == Some(false), window_s);
-    let lag_s = least_of(&profiles, None);
-    let count = profiles.len();
-    let left_out: Vec<f64> = (0..count)
-        .map(|out| libm::log(least_of(&profiles, Some(out)) / lag_s))
-        .collect();
-    let mean = mean_of_finite(left_out.iter().copied());
-    let square = mean_of_finite(left_out.iter().map(|x| (x - mean) * (x - mean)));
-    let half_width = student_t_975(count - 1) * ((count - 1) as f64 * square).sqrt();
-    let interval_s = [-half_width, half_width].map(|half| lag_s * libm::exp(half));
-    let [low, high] = interval_s;
-    if high > WIDEST * low || !(LAGS_S[0] < low && high < LAGS_S[1]) {
+    let (lag_s, interval_s) = agreed(&profiles);
+    if !tells(interval_s) {
+        let [low, high] = interval_s;
         return refuse(format!(
             "the steps agree on no lag: {lag_s:.3} s, {low:.3} to {high:.3} s of them"
         ));
@@ -170,6 +173,59 @@ pub fn find(logs: &[Log], exponent: f64, throttle: f64) -> Result<RotorLag, Refu
         by_speed,
         files,
     })
+}
+
+/// What is known of the rotors of a flight.
+#[derive(Debug, Clone, Copy)]
+pub struct Flown {
+    /// Exponent of the thrust over the voltage.
+    pub exponent: f64,
+    /// The throttle that the lag is of.
+    pub throttle: f64,
+    /// Whether their controllers brake.
+    pub brakes: bool,
+}
+
+/// The lag of rotors that fly, s, with its 95 % interval: rows of time, s, throttle and speed of each rotor, on which its throttle is
+/// taken to go straight from row to row. `None` where rows are rarer than 20 Hz, or tell no lag.
+///
+/// As by steps, but the law is followed from row to row, and parts of five seconds are left out in turn. Speeds that come late by up
+/// to a tenth of a second are known from a lag.
+pub fn in_flight(rotors: &[Vec<[f64; 3]>], flown: Flown) -> Option<(f64, [f64; 2])> {
+    let law = Law {
+        share: ohmic_share(flown.exponent, 1.0),
+        throttle: flown.throttle,
+        by_speed: true,
+    };
+    let mut parts: BTreeMap<i64, Vec<&[[f64; 3]]>> = BTreeMap::new();
+    for rows in rotors {
+        let part = |row: &[f64; 3]| (row[0] / PART_S).floor() as i64;
+        for run in rows.chunk_by(|a, b| part(a) == part(b) && b[0] - a[0] < FLIGHT_GAP_S) {
+            let seconds = run[run.len() - 1][0] - run[0][0];
+            if seconds > 0.5 * PART_S && run.len() as f64 > FLIGHT_HZ * seconds {
+                parts.entry(part(&run[0])).or_default().push(run);
+            }
+        }
+    }
+    let every = parts.len().div_ceil(MOST_PARTS).max(1);
+    let profiles: Vec<Vec<f64>> = parts
+        .values()
+        .step_by(every)
+        .map(|runs| {
+            grid(|lag_s| {
+                let left = |delay_s| {
+                    runs.iter()
+                        .map(|run| left_of(law.flown(run, lag_s, delay_s, !flown.brakes)))
+                        .sum()
+                };
+                least(left, [0.0, DELAY_S])
+            })
+        })
+        .collect();
+    if profiles.len() < PARTS {
+        return None;
+    }
+    Some(agreed(&profiles)).filter(|(_, interval_s)| tells(*interval_s))
 }
 
 /// Whether speeds were measured: loggers write zeros where they are not.
@@ -243,6 +299,38 @@ impl Step {
     }
 }
 
+/// The lag of all profiles, s, and its interval by those that are left out in turn.
+fn agreed(profiles: &[Vec<f64>]) -> (f64, [f64; 2]) {
+    let lag_s = least_of(profiles, None);
+    let count = profiles.len();
+    let left_out: Vec<f64> = (0..count)
+        .map(|out| libm::log(least_of(profiles, Some(out)) / lag_s))
+        .collect();
+    let mean = mean_of_finite(left_out.iter().copied());
+    let square = mean_of_finite(left_out.iter().map(|x| (x - mean) * (x - mean)));
+    let half_width = student_t_975(count - 1) * ((count - 1) as f64 * square).sqrt();
+    (
+        lag_s,
+        [-half_width, half_width].map(|half| lag_s * libm::exp(half)),
+    )
+}
+
+/// Whether an interval serves: narrow, and away from the grid's begin, where a flat profile has its least.
+fn tells([low, high]: [f64; 2]) -> bool {
+    high <= WIDEST * low && at(1.5) < low && high < LAGS_S[1]
+}
+
+/// What a straight line leaves of rows of a model and what was measured, by least squares.
+fn left_of(rows: Vec<[f64; 2]>) -> f64 {
+    let means = [0, 1].map(|k| mean_of_finite(rows.iter().map(|row| row[k])));
+    let moment = |a: usize, b: usize| -> f64 {
+        rows.iter()
+            .map(|row| (row[a] - means[a]) * (row[b] - means[b]))
+            .sum()
+    };
+    moment(1, 1) - moment(0, 1) * moment(0, 1) / moment(0, 0).max(f64::MIN_POSITIVE)
+}
+
 /// How rotors follow.
 struct Law {
     /// s.
@@ -259,11 +347,15 @@ impl Law {
         ((1.0 - s) * (1.0 - s) + 4.0 * s * throttle).sqrt()
     }
 
-    /// w a time after a step, of a rotor that has come to rest before it; the time is over t.
-    fn speed(&self, [from, to]: [f64; 2], coasts: bool, mut time: f64) -> f64 {
+    /// w of q.
+    fn of_root(&self, q: f64) -> f64 {
+        (q - (1.0 - self.share)) / (2.0 * self.share)
+    }
+
+    /// q after a time of a throttle; the time is over t.
+    fn after(&self, mut q: f64, to: f64, coasts: bool, mut time: f64) -> f64 {
         let s = self.share;
-        let mut q = self.root(from);
-        let w = (q - (1.0 - s)) / (2.0 * s);
+        let w = self.of_root(q);
         let slowest = to / (1.0 - s);
         if coasts && slowest < w {
             let coasting = time.min((1.0 / slowest - 1.0 / w) / s);
@@ -272,27 +364,49 @@ impl Law {
         }
         let end = self.root(to);
         let grown = libm::tanh(0.5 * end * time);
-        (end * (q + end * grown) / (end + q * grown) - (1.0 - s)) / (2.0 * s)
+        end * (q + end * grown) / (end + q * grown)
     }
 
     /// What is left of a step's rows, by least squares over both ends and the delay.
     fn misfit(&self, step: &Step, lag_s: f64, coasts: bool, window_s: f64) -> f64 {
         let time_s = lag_s * self.root(self.throttle);
+        let [from, to] = step.ends;
         let left = |delay_s: f64| {
             let model = |row: &[f64; 2]| {
-                let w = self.speed(step.ends, coasts, (row[0] - delay_s).max(0.0) / time_s);
+                let time = (row[0] - delay_s).max(0.0) / time_s;
+                let w = self.of_root(self.after(self.root(from), to, coasts, time));
                 if self.by_speed { w } else { w * w }
             };
-            let rows: Vec<[f64; 2]> = step.within(window_s).map(|row| [model(row), row[1]]).collect();
-            let means = [0, 1].map(|k| mean_of_finite(rows.iter().map(|row| row[k])));
-            let moment = |a: usize, b: usize| -> f64 {
-                rows.iter()
-                    .map(|row| (row[a] - means[a]) * (row[b] - means[b]))
-                    .sum()
-            };
-            moment(1, 1) - moment(0, 1) * moment(0, 1) / moment(0, 0).max(f64::MIN_POSITIVE)
+            left_of(step.within(window_s).map(|row| [model(row), row[1]]).collect())
         };
         least(left, [-step.gap_s, DELAY_S])
+    }
+
+    /// w and the speed of rows of a flight, but of those before the law has forgotten where it began.
+    fn flown(&self, rows: &[[f64; 3]], lag_s: f64, delay_s: f64, coasts: bool) -> Vec<[f64; 2]> {
+        let time_s = lag_s * self.root(self.throttle);
+        let mut q = self.root(rows[0][1]);
+        // The throttle a time ago, on the line through the rows around it; `last` is a row after it.
+        let throttle = |time: f64, last: usize| {
+            let after = (1..=last)
+                .rev()
+                .take_while(|k| rows[k - 1][0] > time)
+                .last()
+                .map_or(last, |k| k - 1);
+            let [from, to] = [rows[after.max(1) - 1], rows[after.max(1)]];
+            let share = ((time - from[0]) / (to[0] - from[0])).clamp(0.0, 1.0);
+            from[1] + share * (to[1] - from[1])
+        };
+        let mut told = Vec::new();
+        for k in 1..rows.len() {
+            let [from, to] = [rows[k - 1][0], rows[k][0]];
+            let given = throttle(0.5 * (from + to) - delay_s, k);
+            q = self.after(q, given, coasts, (to - from) / time_s);
+            if to - rows[0][0] > FORGOTTEN_S {
+                told.push([self.of_root(q), rows[k][2]]);
+            }
+        }
+        told
     }
 
     /// What is left of each step by each lag of the grid.
@@ -302,13 +416,15 @@ impl Law {
         coasts: bool,
         window_s: f64,
     ) -> Vec<Vec<f64>> {
-        let of_step = |step| {
-            (0..GRID)
-                .map(|k| self.misfit(step, at(k as f64), coasts, window_s))
-                .collect()
-        };
-        steps.map(of_step).collect()
+        steps
+            .map(|step| grid(|lag_s| self.misfit(step, lag_s, coasts, window_s)))
+            .collect()
     }
+}
+
+/// A function at the lags of the grid.
+fn grid(of: impl Fn(f64) -> f64) -> Vec<f64> {
+    (0..GRID).map(|k| of(at(k as f64))).collect()
 }
 
 /// The lag of a place on the grid, s.

@@ -93,6 +93,7 @@ impl Review {
             power: Power::new(&rows, flight, compiled),
             saturated: Saturated::new(&rows, flight, compiled),
             speeds: rotors::speeds(&rows, compiled),
+            lag: rotors::Lag::of(&rows, compiled),
             stopped: rotors::stopped(&rows),
             warnings: Vec::new(),
             flown: flown(&rows, compiled),

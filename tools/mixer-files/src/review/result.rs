@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::review::rotors::{Speed, Stopped};
+use crate::review::rotors::{Lag, Speed, Stopped};
 use crate::review::saturated::Saturated;
 use crate::review::thrust::Thrust;
 use crate::stacks::stack::Stack;
@@ -42,6 +42,8 @@ pub struct Review {
     pub saturated: Saturated,
     /// Speeds of the rotors against their fellows'; empty where they were not logged.
     pub speeds: Vec<Speed>,
+    /// How fast rotors follow; `None` where the log does not tell.
+    pub lag: Option<Lag>,
     /// Rotors that stopped in the air.
     pub stopped: Vec<Stopped>,
     /// What deserves a look, a sentence each.

@@ -1,6 +1,8 @@
 //! Rotors against their fellows, by the speeds that their controllers report.
 
 use mixer_compiler::Compiled;
+use mixer_compiler::flywheel::exponent;
+use mixer_identify::lag::{Flown, in_flight};
 use mixer_rt::Health;
 use serde::Serialize;
 
@@ -15,6 +17,9 @@ const STOPPED_S: f64 = 1.0;
 
 /// Change of all throttles for the slope of the speed.
 const STEP: f32 = 0.01;
+
+/// Speeds that are logged closer tell no more of a lag, s.
+const CLOSEST_S: f64 = 0.008;
 
 /// A rotor that stopped.
 #[derive(Clone, Debug, Serialize)]
@@ -32,6 +37,59 @@ pub struct Speed {
     pub output: usize,
     /// The ratio.
     pub ratio: f64,
+}
+
+/// How fast rotors follow their throttles.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Lag {
+    /// The lag by the logged speeds, s.
+    pub lag_s: f64,
+    /// Its 95 % interval by scatter, s.
+    pub interval_s: [f64; 2],
+    /// The throttle that it is of.
+    pub throttle: f64,
+    /// What `mix_dynamic` takes there, s.
+    pub of_mixer_s: f64,
+}
+
+impl Lag {
+    /// `None` where `mix_dynamic` is not proven, or outputs or speeds are logged more rarely than at 20 Hz.
+    pub(crate) fn of(rows: &Rows, compiled: &Compiled) -> Option<Lag> {
+        let airframe = &compiled.airframe;
+        let taken = compiled.dynamics.as_ref()?.first()?;
+        let rotor = |output: usize| {
+            let values = rows
+                .rows
+                .iter()
+                .map(|row| [row.time_s, row.throttle[output].into(), row.speeds[output]]);
+            let mut rows: Vec<[f64; 3]> = Vec::new();
+            // A speed is held until the next one comes; the law knows rotors that turn.
+            for row in values.filter(|row| row[1] > 0.0 && row[2] > 0.0) {
+                if rows
+                    .last()
+                    .is_none_or(|last| row[2] != last[2] && row[0] - last[0] > CLOSEST_S)
+                {
+                    rows.push(row);
+                }
+            }
+            rows
+        };
+        let rotors: Vec<Vec<[f64; 3]>> = (0..airframe.rotors()).map(rotor).collect();
+        let flown = Flown {
+            exponent: exponent(airframe),
+            throttle: taken.throttle,
+            brakes: airframe
+                .vehicle
+                .as_ref()
+                .is_none_or(|vehicle| vehicle.rotor_brakes),
+        };
+        in_flight(&rotors, flown).map(|(lag_s, interval_s)| Lag {
+            lag_s,
+            interval_s,
+            throttle: taken.throttle,
+            of_mixer_s: taken.lag_s,
+        })
+    }
 }
 
 impl Speed {

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use crate::review::result::{Hover, Power, Range, Review};
+use crate::review::rotors::Lag;
 use crate::review::saturated::{Saturated, Source};
 use crate::review::thrust::Part;
 
@@ -85,6 +86,14 @@ fn power(power: &Power) -> String {
     )
 }
 
+fn lag(of: &Lag) -> String {
+    let [low, high] = of.interval_s;
+    format!(
+        "{:.3} s ({low:.3} to {high:.3}) at throttle {:.2}, `rotor_lag_s` of `[vehicle]`; `mix_dynamic` takes {:.3} s",
+        of.lag_s, of.throttle, of.of_mixer_s
+    )
+}
+
 fn saturated(cut: &Saturated) -> String {
     let [roll, pitch, yaw, thrust] =
         [cut.roll, cut.pitch, cut.yaw, cut.thrust].map(|share| or_dash(share.map(|share| 100.0 * share), 1));
@@ -140,6 +149,7 @@ impl Review {
                 .map(|density| ("density", range(density, "kg/m3", "range_kg_m3"))),
         );
         lines.extend(self.power.iter().map(|of| ("power", power(of))));
+        lines.extend(self.lag.iter().map(|of| ("rotors' lag", lag(of))));
         lines.push(("saturated", saturated(&self.saturated)));
         lines.extend(self.warnings.iter().map(|warning| ("warning", warning.clone())));
         lines

@@ -423,6 +423,71 @@ fn a_weak_rotor_is_told_from_a_moved_centre() {
     );
 }
 
+/// Throttles that a controller moves at several frequencies, and rotors that follow them with a lag.
+#[test]
+fn rotors_lag_is_found_where_speeds_are_logged() {
+    const LAG_S: f64 = 0.07;
+    let compiled = compiled();
+    let format = Topic {
+        name: "esc_report",
+        fields: "float esc_rpm;float actuator_function;",
+        period_s: f64::INFINITY,
+        rows: &|_| Vec::new(),
+    };
+    let wander = |rotor: usize, time_s: f64, lag_s: f64| {
+        let of = |(k, w): (usize, f64)| {
+            let phase = w * time_s + (3 * rotor + 5 * k) as f64 - libm::atan(w * lag_s);
+            0.01 * libm::sin(phase) / libm::hypot(1.0, w * lag_s)
+        };
+        [3.0, 7.0, 13.0, 19.0, 29.0]
+            .into_iter()
+            .enumerate()
+            .map(of)
+            .sum::<f64>() as f32
+    };
+    let given = |time_s: f64, lag_s: f64| -> Vec<f32> {
+        let steady = throttles(&compiled, time_s).into_iter().enumerate();
+        steady
+            .map(|(rotor, of)| {
+                if of > 0.0 {
+                    of + wander(rotor, time_s, lag_s)
+                } else {
+                    of
+                }
+            })
+            .collect()
+    };
+    let logged = |period_s: f64| {
+        let motors = |time_s: f64| given(time_s, 0.0);
+        let escs = |time_s: f64| {
+            esc_row(
+                &given(time_s, LAG_S)
+                    .iter()
+                    .map(|x| 6000.0 * libm::powf(*x, 0.9))
+                    .collect::<Vec<_>>(),
+            )
+        };
+        let mut topics = speeds(&format, &escs);
+        topics[1].period_s = period_s;
+        topics.push(Topic {
+            name: "actuator_motors",
+            fields: "float[8] control;",
+            period_s,
+            rows: &motors,
+        });
+        review(&px4_log_with(&px4_frame(&compiled), &motors, topics)).unwrap()
+    };
+    let told = logged(0.04);
+    let lag = told.lag.unwrap_or_else(|| panic!("{told}"));
+    assert!((lag.lag_s / LAG_S - 1.0).abs() < 0.15, "{lag:?}");
+    assert!(
+        told.to_string()
+            .contains("`rotor_lag_s` of `[vehicle]`; `mix_dynamic` takes"),
+        "{told}"
+    );
+    assert!(logged(0.1).lag.is_none());
+}
+
 /// The battery's power over the model's, and what is left of its charge.
 #[test]
 fn power_has_a_scale() {

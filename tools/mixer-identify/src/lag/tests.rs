@@ -223,14 +223,15 @@ fn the_response_is_that_of_the_law() {
         (0.8, 0.2, true),
         (0.5, 0.48, true),
     ] {
-        let mut w = law.speed([from, to], coasts, 0.0);
+        let speed = |time: f64| law.of_root(law.after(law.root(from), to, coasts, time));
+        let mut w = speed(0.0);
         assert!(((1.0 - s) * w + s * w * w - from).abs() < 1e-12);
         let dt = 1e-5;
         for k in 1..400_000 {
             let acts = if coasts { f64::max(to, (1.0 - s) * w) } else { to };
             w += dt * (acts - (1.0 - s) * w - s * w * w);
             if k % 20_000 == 0 {
-                let exact = law.speed([from, to], coasts, f64::from(k) * dt);
+                let exact = speed(f64::from(k) * dt);
                 assert!((exact - w).abs() < 1e-4, "{from} {to} {k}: {w} {exact}");
             }
         }
@@ -246,4 +247,81 @@ fn ramps_of_a_bench_are_refused() {
     let log = read("steps.csv", &std::fs::read(path).unwrap(), &Reading::default()).unwrap();
     let refusal = find(&[log], EXPONENT, HOVER).unwrap_err().to_string();
     assert!(refusal.contains("0 steps of the throttle up"), "{refusal}");
+}
+
+/// Rotors in flight: a throttle that wanders about hover, speeds at a rate, late and noisy. Rows of time, throttle, speed.
+fn flight(lag_s: f64, rate_hz: f64, late_s: f64, brakes: bool, seed: u64) -> Vec<Vec<[f64; 3]>> {
+    let s = ohmic_share(EXPONENT, 1.0);
+    let root = |x: f64| ((1.0 - s) * (1.0 - s) + 4.0 * s * x).sqrt();
+    let (time_s, dt) = (lag_s * root(HOVER), 1e-3);
+    let rotor = |k: u64| {
+        let mut random = Random(0x9e37_79b9_7f4a_7c15 ^ (8 * seed + k + 1));
+        let (mut worth, mut slow, mut fast, mut next) = (HOVER, 0.0, 0.0, 0.0);
+        let mut late = std::collections::VecDeque::from(vec![HOVER; (late_s / dt) as usize + 1]);
+        let mut rows = Vec::new();
+        for step in 0..60_000 {
+            // Attitude control: swings of about a second and of a tenth.
+            slow += -dt * slow + 0.05 * dt.sqrt() * random.normal();
+            fast += -10.0 * dt * fast + 0.08 * dt.sqrt() * random.normal();
+            let given = (HOVER + slow + fast).clamp(0.1, 1.0);
+            let back_emf = (1.0 - s) * (root(worth) - (1.0 - s)) / (2.0 * s);
+            let acts = if brakes { given } else { given.max(back_emf) };
+            worth += dt * (acts - worth) * root(worth) / time_s;
+            late.push_back(worth);
+            let seen = late.pop_front().unwrap();
+            let time = f64::from(step) * dt;
+            if time >= next {
+                next += 1.0 / rate_hz;
+                let w = (root(seen) - (1.0 - s)) / (2.0 * s);
+                rows.push([time, given, (8000.0 * w + 10.0 * random.normal()).round()]);
+            }
+        }
+        rows
+    };
+    (0..8).map(rotor).collect()
+}
+
+#[test]
+fn lags_are_found_in_flight() {
+    for (lag_s, rate_hz, late_s, brakes) in [
+        (0.03, 50.0, 0.0, true),
+        (0.06, 20.0, 0.0, true),
+        (0.06, 50.0, 0.02, true),
+        (0.08, 25.0, 0.01, false),
+        (0.15, 20.0, 0.03, true),
+    ] {
+        let flown = Flown {
+            exponent: EXPONENT,
+            throttle: HOVER,
+            brakes,
+        };
+        for seed in 0..2 {
+            let (found, [low, high]) =
+                in_flight(&flight(lag_s, rate_hz, late_s, brakes, seed), flown).unwrap();
+            println!("{lag_s} s at {rate_hz} Hz, {late_s} s late: {found} ({low} to {high})");
+            assert!((found / lag_s - 1.0).abs() < 0.1 && low < found && found < high);
+        }
+    }
+}
+
+#[test]
+fn flights_that_tell_no_lag_say_none() {
+    let flown = Flown {
+        exponent: EXPONENT,
+        throttle: HOVER,
+        brakes: true,
+    };
+    let slow = flight(0.06, 10.0, 0.0, true, 1);
+    assert_eq!(in_flight(&slow, flown), None, "10 Hz");
+    let mut random = Random(1);
+    let mut noise = flight(0.06, 25.0, 0.0, true, 1);
+    noise
+        .iter_mut()
+        .flatten()
+        .for_each(|row| row[2] = 5000.0 + 50.0 * random.normal());
+    assert_eq!(in_flight(&noise, flown), None, "speeds that follow nothing");
+    let mut still = flight(0.06, 25.0, 0.0, true, 1);
+    still.iter_mut().flatten().for_each(|row| row[1] = HOVER);
+    assert_eq!(in_flight(&still, flown), None, "throttles that do not move");
+    assert_eq!(in_flight(&[Vec::new(), vec![[0.0, 0.5, 1.0]]], flown), None);
 }
