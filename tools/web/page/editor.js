@@ -4,10 +4,12 @@
 function element(name, properties = {}, ...children) {
   const made = document.createElement(name);
   // Browsers of 2023 have no properties for the attributes of ARIA.
-  for (const [key, value] of Object.entries(properties)) key.startsWith("aria-") ? made.setAttribute(key, value) : made[key] = value;
+  for (const [key, value] of Object.entries(properties)) key.includes("-") ? made.setAttribute(key, value) : made[key] = value;
   made.append(...children);
   return made;
 }
+const button = (textContent, onclick, properties) => element("button", { type: "button", textContent, onclick, ...properties });
+const row = (head, ...texts) => element("tr", {}, element("th", { scope: "row", textContent: head }), ...texts.map((textContent) => element("td", { textContent })));
 
 class Editor {
   constructor(box, changed) {

@@ -1,7 +1,7 @@
 // The mixer under sliders: draws what Desk.scene and Desk.mix answer.
 "use strict";
 const AXES = [["roll", "N m"], ["pitch", "N m"], ["yaw", "N m"], ["thrust", "N"]];
-const SATURATED = { "+": (axis) => `less ${axis} than asked`, "-": (axis) => `more ${axis} than asked` };
+const SATURATED = { "+": "less", "-": "more" };
 
 function drawn(name, attributes = {}, text = "") {
   const made = document.createElementNS("http://www.w3.org/2000/svg", name);
@@ -10,8 +10,10 @@ function drawn(name, attributes = {}, text = "") {
   return made;
 }
 
-const short = (x, least = 1e-9) => (Math.abs(x) < least ? "0" : Number(x.toPrecision(4)).toString());
+const short = (x, least = 1e-9) => (Math.abs(x) < least ? "0" : String(rounded(x)));
 const ofThrottle = (x) => (x === 0 ? "0" : x.toFixed(3));
+const rounded = (x) => Number(x.toPrecision(4));
+const clamped = (x, low, high) => Math.min(high, Math.max(low, x));
 // What people write behind a number, in the units that the labels of fields have.
 const UNITS = {
   m: { m: 1, cm: 0.01, mm: 0.001, in: 0.0254, inch: 0.0254, '"': 0.0254 }, kg: { kg: 1, g: 0.001, lb: 0.45359237, oz: 0.028349523125 },
@@ -33,8 +35,10 @@ function number(label, typed) {
 const labelOf = (field) => field.labels[0].firstChild.textContent.trim();
 
 // The number of a rotor as the chosen stack counts its motors, from 1; code and airframe file count outputs from 0.
-const isByOutput = () => document.getElementById("stack").value === "own";
+const isByOutput = () => $("stack").value === "own";
 const motor = (channel) => (isByOutput() ? channel : channel + 1);
+
+const farthest = (units) => Math.max(...units.map(({ place_m }) => Math.hypot(...place_m)));
 
 // The frame seen from above, with a ring for every rotor as long as its throttle.
 class FromAbove {
@@ -46,11 +50,10 @@ class FromAbove {
   // A known diameter (m) is drawn to scale.
   frame(units, diameter) {
     const { svg } = this;
-    const far = Math.max(1e-9, ...units.map(({ place_m }) => Math.hypot(...place_m)));
+    const far = farthest(units) || 1e-9;
     const place = ({ place_m: [x, y] }) => [150 + 98 * y / far, 150 - 98 * x / far];
     const apart = units.flatMap((a, k) => units.slice(k + 1).map((b) => Math.hypot(place(a)[0] - place(b)[0], place(a)[1] - place(b)[1])));
     const radius = Math.min(52, 0.46 * Math.min(...apart, 300));
-    svg.setAttribute("viewBox", "0 0 300 300");
     svg.replaceChildren(...units.map((unit) => drawn("path", { class: "arm", d: `M150 150L${place(unit)}` })),
       drawn("path", { class: "forward", d: "M150 128v-26m-7 9l7 -9l7 9" }));
     this.rings = [];
@@ -69,12 +72,12 @@ class FromAbove {
     }
   }
 
-  // Throttles by output; those of `failed` are out.
-  turn(throttles, failed) {
+  // Throttles by output, none where they are not known; those of `failed` are out.
+  turn(throttles = this.rings.map(() => null), failed = []) {
     throttles.forEach((throttle, channel) => {
       const { ring, text, spin } = this.rings[channel], out = failed.includes(channel);
       ring.classList.toggle("out", out);
-      ring.setAttribute("stroke-dasharray", out ? ".02 .02" : `${throttle ?? 0} 1`);
+      ring.setAttribute("stroke-dasharray", `${throttle ?? 0} 1`);
       text.textContent = out ? `${motor(channel)} out` : `${motor(channel)}${spin} ${throttle === null ? "" : Math.round(100 * throttle)}`;
     });
   }
@@ -96,36 +99,26 @@ function drawSide(svg, { arm, diameter, spacing }) {
 class Hand {
   // `moved` is told of every new position.
   constructor(ask, moved) {
-    Object.assign(this, { ask, moved, busy: false, stale: false, frames: 0, top: new FromAbove(document.getElementById("top")) });
-    document.getElementById("hover").addEventListener("click", () => this.put({ wrench: [0, 0, 0, this.scene.hover_n] }));
-  }
-
-  // Uses the number that was typed into a field; what is none is said at the flags.
-  typed(label, text, use) {
-    try {
-      if (text.trim()) use(number(label, text));
-    } catch ({ message }) {
-      this.flag(message, true);
-    }
+    Object.assign(this, { ask, moved, busy: false, stale: false, frames: 0, top: new FromAbove($("top")) });
+    $("hover").onclick = () => this.put({ wrench: [0, 0, 0, this.scene.hover_n] });
   }
 
   // The airframe of a name; `at` is the position { name, wrench, volts, density, failed } of the one before, or null. One of
   // another name begins in hover.
   show(scene, name, before) {
-    const at = before?.name === name ? before : null;
-    this.scene = { ...scene, hover_n: Number(scene.hover_n.toPrecision(4)) };
-    this.scene.largest = this.scene.largest.map((x) => Number(x.toPrecision(4)));
-    const { largest, hover_n, volts, density, units } = this.scene;
-    const within = (x, ends) => (ends ? Math.min(ends[2], Math.max(ends[0], x ?? ends[1])) : 0);
-    const limit = (x, k) => (k === 3 ? Math.min(largest[3], Math.max(0, x)) : Math.min(largest[k], Math.max(-largest[k], x)));
+    const at = before?.name === name ? before : {};
+    const [hover_n, largest] = [rounded(scene.hover_n), scene.largest.map(rounded)];
+    this.scene = { ...scene, hover_n, largest, least: largest.map((most, k) => (k === 3 ? 0 : -most)) };
+    const { least, volts, density, units } = this.scene;
+    const within = (x, ends) => (ends ? clamped(x ?? ends[1], ends[0], ends[2]) : 0);
     this.at = {
       name,
-      wrench: (at?.wrench ?? [0, 0, 0, hover_n]).map(limit),
-      volts: within(at?.volts, volts),
-      density: within(at?.density, density),
-      failed: (at?.failed ?? []).filter((channel) => units.some(({ channels }) => channels.includes(channel))),
+      wrench: (at.wrench ?? [0, 0, 0, hover_n]).map((x, k) => clamped(x, least[k], largest[k])),
+      volts: within(at.volts, volts),
+      density: within(at.density, density),
+      failed: (at.failed ?? []).filter((channel) => units.some(({ channels }) => channels.includes(channel))),
     };
-    document.getElementById("rings").hidden = units.every(({ channels }) => channels.length === 1);
+    $("rings").hidden = units.every(({ channels }) => channels.length === 1);
     this.sliders();
     this.rotors();
     this.frame();
@@ -133,69 +126,69 @@ class Hand {
   }
 
   sliders() {
-    const { largest, volts, density } = this.scene;
+    const { least, largest, volts, density } = this.scene;
     const one = (id, label, low, high, get, put) => {
       const step = 10 ** Math.floor(Math.log10((high - low) / 400));
-      const range = element("input", { type: "range", id, min: low, max: high, step: "any", value: get() });
-      const field = element("input", { inputMode: "decimal", id: `${id}-number`, value: get(), "aria-label": label });
-      range.addEventListener("input", () => put(Math.min(high, Math.max(low, Number((Math.round(range.value / step) * step).toPrecision(12))))));
-      field.addEventListener("change", () => this.typed(label, field.value, (value) => put(Number(value))));
-      range.addEventListener("keydown", (event) => {
+      const move = (x) => put(clamped(Number(x.toPrecision(12)), low, high));
+      const range = element("input", { type: "range", id, min: low, max: high, step: "any" });
+      const field = element("input", { inputMode: "decimal", id: `${id}-number`, "aria-label": label });
+      range.oninput = () => move(Math.round(range.value / step) * step);
+      range.onkeydown = (event) => {
         const by = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1, PageDown: -20, PageUp: 20 }[event.key];
         if (!by) return;
         event.preventDefault();
-        put(Math.min(high, Math.max(low, Number((get() + by * step).toPrecision(12)))));
-      });
+        move(get() + by * step);
+      };
+      // What is no number is said at the flags.
+      field.onchange = () => {
+        try {
+          if (field.value.trim()) put(Number(number(label, field.value)));
+        } catch ({ message }) {
+          say(message, true, $("flags"));
+        }
+      };
       this.shown.push(() => { range.value = get(); if (document.activeElement !== field) field.value = get(); });
       return element("label", {}, element("span", { textContent: label }), range, field);
     };
     this.shown = [];
-    const axis = ([name, unit], k) => one(name, `${name}, ${unit}`, k === 3 ? 0 : -largest[k], largest[k],
+    const axis = ([name, unit], k) => one(name, `${name}, ${unit}`, least[k], largest[k],
       () => this.at.wrench[k], (x) => this.put({ wrench: this.at.wrench.map((of, axis) => (axis === k ? x : of)) }));
     const condition = (key, label, ends) => one(key, label, ends[0], ends[2], () => this.at[key], (x) => this.put({ [key]: x }));
-    document.getElementById("sliders").replaceChildren(
-      ...AXES.map((name, k) => largest[k] > 0 && axis(name, k)).filter(Boolean),
-      ...[volts && condition("volts", "voltage, V", volts), density && condition("density", "density, kg/m\u00b3", density)].filter(Boolean));
-  }
-
-  // Every rotor as { channel, layer (0 upper, 1 lower), unit }, by output.
-  all() {
-    const rotors = this.scene.units.flatMap((unit) => unit.channels.map((channel, layer) => ({ channel, layer, unit })));
-    return rotors.sort((a, b) => a.channel - b.channel);
+    $("sliders").replaceChildren(...[...AXES.map((name, k) => largest[k] > 0 && axis(name, k)),
+      volts && condition("volts", "voltage, V", volts), density && condition("density", "density, kg/m\u00b3", density)].filter(Boolean));
   }
 
   rotors() {
+    // Every rotor as { channel, layer (0 upper, 1 lower), unit }, by output.
+    const rotors = this.scene.units.flatMap((unit) => unit.channels.map((channel, layer) => ({ channel, layer, unit })));
+    rotors.sort((a, b) => a.channel - b.channel);
     const arrow = ({ channels }, layer) => (channels.length > 1 ? `${"\u2191\u2193"[layer]} ` : "");
     const word = isByOutput() ? "output" : "motor";
     const label = ({ channel, layer, unit }) => `${word} ${motor(channel)} ${arrow(unit, layer)}${unit.place}`;
-    document.getElementById("rotors").replaceChildren(...this.all().map((rotor) => {
-      const button = element("button", { type: "button", textContent: label(rotor) });
-      button.dataset.output = rotor.channel;
-      button.addEventListener("click", () => {
-        const { failed } = this.at, { channel } = rotor;
+    $("rotors").replaceChildren(...rotors.map((rotor) => {
+      const { channel } = rotor;
+      const out = button(label(rotor), () => {
+        const { failed } = this.at;
         this.put({ failed: failed.includes(channel) ? failed.filter((other) => other !== channel) : [...failed, channel] });
-      });
-      this.shown.push(() => button.setAttribute("aria-pressed", this.at.failed.includes(rotor.channel)));
-      return button;
+      }, { "data-output": channel });
+      this.shown.push(() => out.setAttribute("aria-pressed", this.at.failed.includes(channel)));
+      return out;
     }));
-    const row = (head, cells) => element("tr", {}, element("th", { scope: "row", textContent: head }), ...cells.map(() => element("td")));
-    document.querySelector("#throttles tbody").replaceChildren(...this.all().map((rotor) => row(label(rotor), [0, 1])));
-    document.querySelector("#wrench tbody").replaceChildren(...AXES.map(([name, unit]) => row(`${name}, ${unit}`, [0, 1, 2])));
+    document.querySelector("#throttles tbody").replaceChildren(...rotors.map((rotor) => row(label(rotor), "", "")));
+    document.querySelector("#wrench tbody").replaceChildren(...AXES.map(([name, unit]) => row(`${name}, ${unit}`, "", "", "")));
   }
 
   // What does not move: the frame from above and the axes of the attainable set.
   frame() {
-    const { units, box_n_nm: [[low_n, high_n], [low_nm, high_nm]] } = this.scene, set = document.getElementById("set");
+    const { units, box_n_nm: [[low_n, high_n], [low_nm, high_nm]] } = this.scene;
     this.top.frame(units);
-    set.setAttribute("viewBox", "0 0 320 230");
     this.toX = (n) => 56 + 250 * (n - low_n) / (high_n - low_n || 1);
     this.toY = (nm) => 190 - 176 * (nm - low_nm) / (high_nm - low_nm || 1);
-    const [left, right, bottom, above] = [56, 306, 190, 14];
     this.border = drawn("path", { class: "fill-1 border" });
     const dots = (kind) => units.map(() => drawn("circle", { class: kind, r: 5 }));
     this.dots = [dots("unit-dot"), dots("unit-hollow")];
-    set.replaceChildren(this.border, drawn("path", { class: "frame", d: `M${left} ${above}V${bottom}H${right}` }),
-      drawn("path", { class: "grid", d: `M${left} ${this.toY(0)}H${right}` }),
+    $("set").replaceChildren(this.border, drawn("path", { class: "frame", d: "M56 14V190H306" }),
+      drawn("path", { class: "grid", d: `M56 ${this.toY(0)}H306` }),
       ...[low_n, high_n].map((n, k) => drawn("text", { class: k ? "tick end" : "tick middle", x: this.toX(n), y: 206 }, short(n))),
       ...[low_nm, 0, high_nm].map((nm) => drawn("text", { class: "tick end", x: 50, y: this.toY(nm) + 4 }, short(nm))),
       drawn("text", { class: "middle", x: 181, y: 222 }, "thrust, N"), drawn("text", { x: 60, y: 24 }, "torque, N m"),
@@ -221,23 +214,20 @@ class Hand {
         await new Promise(requestAnimationFrame);
         this.draw(mixed);
       } catch (error) {
-        this.flag(String(error.message), true);
+        say(error.message, true, $("flags"));
       }
     }
     this.busy = false;
   }
 
-  flag(text, wrong) {
-    const flags = document.getElementById("flags");
-    flags.textContent = text;
-    flags.classList.toggle("error", wrong);
-  }
-
   draw({ throttles, achieved, saturation: [bits, words], factors: [byThrust, byTorque], efforts, isolated }) {
     this.frames += 1;
-    const told = words.split(" ").map((word) => SATURATED[word.at(-1)]?.(word.slice(0, -1)) ?? `${word} outside its range and clamped`);
-    this.flag(bits === 0 ? "Delivered in full" : told.join(", "), bits !== 0);
-    document.getElementById("flags").dataset.bits = bits;
+    const told = words.split(" ").map((word) => {
+      const given = SATURATED[word.at(-1)];
+      return given ? `${given} ${word.slice(0, -1)} than asked` : `${word} outside its range and clamped`;
+    });
+    say(bits === 0 ? "Delivered in full" : told.join(", "), bits !== 0, $("flags"));
+    $("flags").dataset.bits = bits;
     const fill = (table, rows) => document.querySelectorAll(`#${table} tbody tr`).forEach((row, k) =>
       // All the digits that the command line prints are there for who looks.
       row.querySelectorAll("td").forEach((cell, column) => { [cell.textContent, cell.dataset.exact] = rows[k][column]; }));

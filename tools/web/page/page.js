@@ -8,17 +8,16 @@
 //
 // What is refused changes nothing on the desk: the airframe there is then the last one, and the page says so.
 "use strict";
-const $ = (id) => document.getElementById(id);
 const KEY = "coaxial-mixer";
 // Numbers of the data sheet of one rotor: its file has a row for each throttle that has a thrust.
 const SHEET = [50, 65, 75, 85, 100];
 const SHEET_NAME = "data-sheet.csv";
-// Fields whose number is an option of the same name, with the commands that have it.
-const NUMBERS = { arm: ["new", "import"], cells: ["identify", "predict"], diameter: ["predict"], spacing: ["predict"], "run-voltage": ["predict"] };
+// Fields whose number is an option of the same name, by the commands that have it; `import` has that of `new`.
+const NUMBERS = { new: ["arm"], identify: ["cells"], predict: ["cells", "diameter", "spacing", "run-voltage"] };
 // Fields whose text is an option of the same name of the commands that read bench files.
 const TEXTS = ["pwm-range", "voltage-exponent", "temperature", "pressure", "reference-voltage"];
 const THRUSTS = SHEET.map((percent) => `thrust-${percent}`);
-const FIELDS = ["frame", "name", "stack", "chemistry", "capacity", "unit-thrust", "unit-throttle", "tare", "swap", "options", "pulses", ...Object.keys(NUMBERS), ...TEXTS, ...THRUSTS];
+const FIELDS = ["frame", "name", "stack", "chemistry", "capacity", "unit-thrust", "unit-throttle", "tare", "swap", "options", "pulses", "arm", ...NUMBERS.predict, ...TEXTS, ...THRUSTS];
 // Fields of keys of the airframe file: those that are set in it after it is made, and those that it is made with.
 const KEYS = { mass_kg: "vehicle.mass_kg", airmode: "allocation.airmode", yaw_reserve_nm: "allocation.yaw_reserve_nm", power_bias_nm_per_n: "allocation.power_bias_nm_per_n" };
 const FIELD_OF = { ...Object.fromEntries(Object.entries(KEYS).map(([id, path]) => [path, id])), "layout.arm_m": "arm", name: "name" };
@@ -45,10 +44,7 @@ const OUTPUTS = {
   "rotors-out.csv": ["Golden outputs, rotors out", "The same with rotors that have failed."],
   "report.txt": ["Every number", "All that is known of the airframe, as text."],
 };
-const OF_STACK = {
-  px4: ["px4-own", "report", "airframe", "px4"], ardupilot: ["ardupilot-own", "report", "airframe", "ardupilot"],
-  betaflight: ["betaflight-own", "report", "airframe", "betaflight"], own: ["rs", "vectors.csv", "report", "airframe"],
-};
+const ofStack = (stack) => (stack === "own" ? ["rs", "vectors.csv", "report", "airframe"] : [`${stack}-own`, "report", "airframe", stack]);
 
 const quoted = (word) => (/^[\w./,=:+-]+$/.test(word) ? word : `'${word.replaceAll("'", "'\\''")}'`);
 const isText = (text) => typeof text === "string";
@@ -59,17 +55,18 @@ const plural = (n, word) => `${n || "no"} ${word}${n === 1 ? "" : "s"}`;
 // What the compiler has against an input: faults of files, or the sentence at a field.
 class Refused extends Error {
   constructor(why, field = "") {
-    super(isText(why) ? why : why.map(({ message }) => message).join("; "));
-    this.faults = isText(why) ? [{ file: "", message: why, help: "", mends: [] }] : why;
-    this.field = field;
+    const faults = isText(why) ? [{ message: why }] : why;
+    super(faults.map(({ message }) => message).join("; "));
+    Object.assign(this, { faults, field });
   }
 }
 const waiting = new Map();
 let asked = 0, worker, loaded;
 const ask = (method, ...words) => new Promise((...both) => {
+  if (!waiting.size) since = performance.now();
+  step = (STEPS[method] ?? "") + (method === "kind" ? words[0] : "") || step;
   waiting.set(asked += 1, both);
   worker.postMessage({ id: asked, method, words });
-  doing(method, words);
 });
 const program = URL.createObjectURL(new Blob([$("worker").textContent], { type: "text/javascript" }));
 const packedModule = Uint8Array.from(atob($("module").textContent.trim()), (c) => c.charCodeAt(0));
@@ -90,10 +87,6 @@ function begin() {
 // What is under way, from 300 ms on, with a way to stop it: what was put in since the last time that all was done is taken back.
 const STEPS = { kind: "Reading ", make: "Making the model", check: "Compiling", report: "Drawing the report", output: "Writing the files" };
 let since = 0, step = "";
-function doing(method, words) {
-  if (waiting.size === 1) since = performance.now();
-  step = (STEPS[method] ?? "") + (method === "kind" ? words[0] : "") || step;
-}
 setInterval(() => {
   const seconds = (performance.now() - since) / 1000;
   $("work").hidden = isSettled() || !view || seconds < 0.3;
@@ -105,9 +98,12 @@ function stop() {
   worker.terminate();
   for (const [, reject] of waiting.values()) reject(new Stopped());
   waiting.clear();
-  [checked, reportShown] = [null, ""];
-  [state, refusedFiles] = [done ? JSON.parse(done) : fresh(), []];
   begin();
+  restart(done ? JSON.parse(done) : fresh());
+}
+// Goes on with another state, of which everything is made anew.
+function restart(of) {
+  [state, refusedFiles, checked, reportShown] = [of, [], null, ""];
   changed();
 }
 
@@ -116,7 +112,7 @@ function stop() {
 // `own` is an airframe that was edited or dropped, with the keys that fields are to set in it; `made` the last one that files and
 // form gave; `last` what was taken last of fields without a part in the airframe; `drawn` the units that were drawn last; `aside` texts that something else took the place of; `dropped` the airframes of which one is to be chosen.
 const fresh = () => ({
-  files: [], form: Object.fromEntries(FIELDS.map((key) => [key, { frame: "x8", stack: "px4" }[key] ?? ""])), keys: {},
+  files: [], form: { ...Object.fromEntries(FIELDS.map((key) => [key, ""])), frame: "x8", stack: "px4" }, keys: {},
   last: { pulses: "", capacity: "" }, drawn: null, own: null, made: null, aside: [], tab: "", hand: null,
 });
 let state = kept();
@@ -144,39 +140,33 @@ addEventListener("pagehide", keep);
 function kept() {
   const isFile = (file) => isText(file?.name) && isText(file?.text), areTexts = (of) => Object.values(of).every(isText);
   try {
-    const { files, form, keys, own, made, aside, tab, hand, last = fresh().last, drawn = null } = JSON.parse(localStorage.getItem(KEY));
-    const state = { ...fresh(), files, keys, own, made, aside, tab, hand, last, drawn, form: { ...fresh().form, ...form } };
-    if (files.every(isFile) && aside.every(isFile) && [own, made].every((of) => of === null || isFile(of)) && areTexts(keys) && areTexts(own?.keys ?? {})
-      && areTexts(state.form) && isText(tab) && areTexts(last) && (hand === null || hand.wrench.length === 4 && Array.isArray(hand.failed))) return state;
+    const read = JSON.parse(localStorage.getItem(KEY)), { files, keys, own, made, aside, tab, hand } = read;
+    const state = { ...fresh(), ...read, form: { ...fresh().form, ...read.form } };
+    if ([...files, ...aside, ...[own, made].filter((of) => of !== null)].every(isFile) && [keys, own?.keys ?? {}, state.form, state.last, [tab]].every(areTexts)
+      && (hand === null || hand.wrench.length === 4 && Array.isArray(hand.failed))) return state;
   } catch {}
   return fresh();
-}
-
-function say(text, wrong = false) {
-  $("status").textContent = text;
-  $("status").classList.toggle("error", wrong);
 }
 
 // --- files and airframes from outside
 
 // Puts aside what stands in the place of a newer text, unless it is the same.
 function putAside(file) {
-  if (!file || state.aside.some(({ text }) => text === file.text)) return;
-  state.aside.push({ name: file.name, text: file.text });
+  if (file && !state.aside.some(({ text }) => text === file.text)) state.aside.push({ name: file.name, text: file.text });
 }
 function receive({ name, text }) {
-  if (state.own?.text !== text) putAside(state.own);
+  putAside(state.own);
   state.aside = state.aside.filter((file) => file.text !== text);
   [state.own, state.tab] = [{ name, text, keys: {} }, ""];
   // A field that somebody was in shows what this airframe has.
   document.activeElement?.blur();
 }
 // One more file of those that make an airframe; the newest of a name counts.
-function add(file) {
-  const before = state.files.find(({ name }) => name === file.name);
-  if (before?.edited && before.text !== file.text) putAside(before);
-  state.files = [...state.files.filter((other) => other !== before), file];
-  state.tab = file.name;
+function add({ name, text }) {
+  const before = state.files.find((file) => file.name === name);
+  if (before?.edited && before.text !== text) putAside(before);
+  state.files = [...state.files.filter((file) => file !== before), { name, text, chosen: "" }];
+  state.tab = name;
 }
 // What a text is, and the points of a bench file with options of `identify`. A long file is read once.
 let kinds = [];
@@ -188,10 +178,10 @@ async function kindOf({ name, text }, options) {
   return { kind: ["px4", "ardupilot", "betaflight"].includes(kind) ? "parameters" : kind, points };
 }
 // Takes a text for what it is.
-async function take({ name, text }) {
-  const { kind } = await kindOf({ name, text }, []);
-  if (kind === "airframe") receive({ name, text });
-  else add({ name, text, chosen: "" });
+async function take(file) {
+  const { kind } = await kindOf(file, []);
+  if (kind === "airframe") receive(file);
+  else add(file);
 }
 
 async function drop(files) {
@@ -205,7 +195,7 @@ async function drop(files) {
       const told = await ask("kind", file.name, new Uint8Array(await file.arrayBuffer()), []), { kind, text } = told;
       kinds.unshift({ name: file.name, words: "", text, told });
       if (kind === "airframe") airframes.push({ name: file.name, text });
-      else add({ name: file.name, text, chosen: "" });
+      else add({ name: file.name, text });
     } catch (error) {
       if (error instanceof Stopped) {
         reading -= 1;
@@ -217,14 +207,12 @@ async function drop(files) {
   reading -= 1;
   if (airframes.length > 1) airframes.forEach(putAside);
   else airframes.forEach(receive);
-  changed({ asks: airframes.length > 1 });
+  changed({ isAsked: airframes.length > 1 });
 }
 
-async function packed(text, stream) {
-  return new Uint8Array(await new Response(new Blob([text]).stream().pipeThrough(stream)).arrayBuffer());
-}
+const passed = (content, stream) => new Response(new Blob([content]).stream().pipeThrough(stream));
 async function link({ name, text }) {
-  const bytes = await packed(JSON.stringify({ name, text }), new CompressionStream("deflate-raw"));
+  const bytes = new Uint8Array(await passed(JSON.stringify({ name, text }), new CompressionStream("deflate-raw")).arrayBuffer());
   const packedText = btoa(Array.from(bytes, (byte) => String.fromCharCode(byte)).join("")).replaceAll("+", "-").replaceAll("/", "_").replaceAll("=", "");
   return `${location.href.split("#")[0]}#airframe=${packedText}`;
 }
@@ -234,7 +222,7 @@ async function linked() {
   history.replaceState(null, "", location.href.split("#")[0]);
   try {
     const bytes = Uint8Array.from(atob(found[1].replaceAll("-", "+").replaceAll("_", "/")), (c) => c.charCodeAt(0));
-    const { name, text } = JSON.parse(new TextDecoder().decode(await packed(bytes, new DecompressionStream("deflate-raw"))));
+    const { name, text } = await passed(bytes, new DecompressionStream("deflate-raw")).json();
     receive({ name: String(name), text: String(text) });
   } catch {
     refusedFiles = [{ name: "The link", message: "it holds no whole airframe: copy all of it" }];
@@ -268,7 +256,7 @@ function pulsesOf(typed) {
 
 // The data sheet that was typed in, as a file; none without a thrust.
 function typedSheet(form) {
-  const rows = SHEET.map((percent) => [percent, numberOf(`thrust-${percent}`, form[`thrust-${percent}`])]).filter(([, thrust]) => thrust);
+  const rows = SHEET.map((percent, k) => [percent, numberOf(THRUSTS[k], form[THRUSTS[k]])]).filter(([, thrust]) => thrust);
   return rows.length ? [{ name: SHEET_NAME, text: `Throttle (%),Thrust (gf)\n${rows.map((row) => `${row}\n`).join("")}`, chosen: "run" }] : [];
 }
 
@@ -281,9 +269,9 @@ async function build({ files, form }) {
     if (!(error instanceof Refused)) throw error;
     for (const fault of error.faults) {
       // What is said of an option stands at its field, or where it was typed.
-      const named = [...`${fault.message} ${fault.help}`.matchAll(/--([\w-]+)/g)].map(([, option]) => option);
+      const named = [...`${fault.message} ${fault.help ?? ""}`.matchAll(/--([\w-]+)/g)].map(([, option]) => option);
       const field = error.field || named.find((option) => FIELDS.includes(option)) || (named.some((option) => form.options.includes(`--${option}`)) ? "options" : "");
-      refuse(built, field, { severity: "error", ...fault, message: field ? fault.message.replace(/^invalid value '.*?' for '--[^']*': /, "") : fault.message });
+      refuse(built, field, fault);
     }
     Object.assign(built, { commands: [], airframe: null });
   }
@@ -295,68 +283,61 @@ const option = (name, value) => (!value ? [] : value.startsWith("-") ? [`--${nam
 
 async function assemble(built, files, form) {
   const options = await ask("words", form.options);
-  const how = [
-    ...(form["unit-thrust"] ? ["--unit", `thrust=${form["unit-thrust"]}`] : []),
-    ...TEXTS.flatMap((id) => option(id, form[id])), ...["tare", "swap"].flatMap((id) => (form[id] ? [`--${id}`] : [])),
-  ];
-  const unit = (...roles) => (form["unit-throttle"] ? roles.flatMap((role) => ["--unit", `${role}=${form["unit-throttle"]}`]) : []);
-  const all = { identify: [...how, ...unit("upper", "lower"), ...options], predict: [...how, ...unit("throttle"), ...options] };
+  const unit = (id, ...roles) => (form[id] ? roles.flatMap((role) => ["--unit", `${role}=${form[id]}`]) : []);
+  const how = [...unit("unit-thrust", "thrust"), ...TEXTS.flatMap((id) => option(id, form[id])), ...["tare", "swap"].flatMap((id) => (form[id] ? [`--${id}`] : []))];
+  const all = { identify: [...how, ...unit("unit-throttle", "upper", "lower"), ...options], predict: [...how, ...unit("unit-throttle", "throttle"), ...options] };
   built.files = [...files.map((file) => ({ ...file })), ...typedSheet(form)];
   for (const file of built.files) {
     const told = await kindOf(file, all.identify).catch(({ message }) => {
       if (file.chosen) return { points: 0 };
-      throw new Refused([{ file: file.name, message, help: "", mends: [] }]);
+      throw new Refused([{ file: file.name, message }]);
     });
     Object.assign(file, told, file.chosen && { kind: file.chosen });
   }
   const of = (kind) => built.files.filter((file) => file.kind === kind).map(({ name }) => name);
   const [maps, [run, lower], [parameters]] = [of("map"), of("run"), of("parameters")];
   // The command that makes the pair of the bench files.
-  const beside = lower ? ["--lower-single", lower] : [];
+  const beside = option("lower-single", lower);
   const points = built.files.reduce((sum, file) => sum + (file.kind === "map" ? file.points : 0), 0);
   const bench = maps.length ? ["identify", ...maps, ...(run && points < ENOUGH ? ["--prior", run, ...beside] : of("run"))]
     : run ? ["predict", run, ...beside] : null;
   const isFramed = Boolean(parameters || form.arm || form.frame === "single");
   built.command = bench?.[0] ?? (parameters ? "import" : form.arm ? "new" : "identify");
 
-  const run_ = async (words, tables) => {
+  const run_ = async (words) => {
     try {
-      const made = await ask("make", words, ...named([...built.files, ...(tables ? [tables] : [])]));
-      built.commands.push(["cargo mixer", ...words].map((word, k) => (k ? quoted(word) : word)).join(" "));
+      const made = await ask("make", words, ...named([...built.files, ...(built.pair ? [built.pair] : [])]));
+      built.commands.push(`cargo mixer ${words.map(quoted).join(" ")}`);
       return made;
     } catch (error) {
       // A field without effect on these files is left out, which is said.
-      const unused = error instanceof Refused && error.faults.find(({ message }) => message.includes("has nothing to work on"));
-      const name = unused && unused.message.match(/--([\w-]+)/)[1];
-      if (!(name in NUMBERS) || !words.includes(`--${name}`)) throw error;
+      const unused = error.faults?.find(({ message }) => message.includes("has nothing to work on"));
+      const name = unused?.message.match(/--([\w-]+)/)[1];
+      if (!Object.values(NUMBERS).flat().includes(name) || !words.includes(`--${name}`)) throw error;
       built.notes.push(unused);
-      const gone = [name, ...(name === "cells" ? ["chemistry"] : [])].map((name) => words.indexOf(`--${name}`)).filter((at) => at >= 0);
-      return run_(words.filter((_, k) => !gone.some((at) => k === at || k === at + 1)), tables);
+      const gone = [`--${name}`, ...(name === "cells" ? ["--chemistry"] : [])];
+      return run_(words.filter((word, k) => !gone.includes(word) && !gone.includes(words[k - 1])));
     }
   };
   const heed = ({ warnings, notes }) => {
     built.warnings.push(...warnings);
     built.notes.push(...notes);
   };
-  const numbers = (command) => Object.keys(NUMBERS).filter((id) => NUMBERS[id].includes(command)).flatMap((id) => option(id, numberOf(id, form[id])));
-  let tables = built.files.find(({ kind }) => kind === "pair");
+  const numbers = (command) => NUMBERS[command].flatMap((id) => option(id, numberOf(id, form[id])));
   if (bench) {
-    const [command] = bench, chemistry = form.cells && form.chemistry ? ["--chemistry", form.chemistry] : [];
+    const [command] = bench, chemistry = option("chemistry", form.cells && form.chemistry);
     const answer = await run_([...bench, "-o", "pair.toml", ...numbers(command), ...chemistry, ...all[command]]);
-    tables = { name: "pair.toml", text: answer.toml };
-    Object.assign(built, { pair: tables, report: answer.report });
+    Object.assign(built, { pair: { name: "pair.toml", text: answer.toml }, report: answer.report });
     heed(answer);
   }
   if (!isFramed) return;
   const { frame } = form, name = nameOf(form.name), file = `${name || `my-${parameters ? "airframe" : frame}`}.toml`;
   // Files of several pairs, each by the name of its file; `new` puts front and rear where they belong.
-  const pairs = bench || of("pair").length < 2 ? [] : of("pair").map((file) => `${file.replace(/\.\w+$/, "")}=${file}`);
-  const borne = pairs.length ? pairs : tables ? [tables.name] : [];
-  const more = [...borne.flatMap((pair) => ["--pair", pair]), ...numbers("new"), ...(name ? ["--name", name] : [])];
-  const rare = bench ? [] : options;
-  const words = parameters ? ["import", parameters, ...more, "-o", file, ...rare]
-    : ["new", "--frame", frame, ...more, ...await order(frame, form.stack), "-o", file, ...rare];
-  const answer = await run_(words, tables);
+  const pairs = built.pair ? [built.pair.name] : of("pair"), isOne = pairs.length === 1;
+  const borne = pairs.flatMap((file) => ["--pair", isOne ? file : `${file.replace(/\.\w+$/, "")}=${file}`]);
+  const more = [...borne, ...numbers("new"), ...option("name", name)];
+  const words = parameters ? ["import", parameters, ...more] : ["new", "--frame", frame, ...more, ...await order(frame, form.stack)];
+  const answer = await run_([...words, "-o", file, ...(bench ? [] : options)]);
   heed(answer);
   built.airframe = { name: file, text: answer.toml };
 }
@@ -367,12 +348,12 @@ async function order(frame, stack) {
   return ask("make", ["new", "--frame", frame, "--arm", "1", ...words, "-o", "a.toml"], [], []).then(() => words, () => []);
 }
 
+const valueOf = (path, typed) => (path in FIELD_OF && FIELD_OF[path] !== "airmode" ? numberOf(FIELD_OF[path], typed) : typed);
 // The airframe with keys set in it.
 async function withKeys({ name, text }, keys) {
   for (const [path, typed] of Object.entries(keys)) {
-    const id = FIELD_OF[path], [table, key] = path.split(".");
-    const value = id === "airmode" ? typed && JSON.stringify(typed) : id ? numberOf(id, typed) : typed;
-    text = await ask("set", text, table, key, value);
+    const value = valueOf(path, typed);
+    text = await ask("set", text, ...path.split("."), FIELD_OF[path] === "airmode" && value ? JSON.stringify(value) : value);
   }
   return { name, text };
 }
@@ -398,17 +379,18 @@ async function tried(airframe, keys, built) {
     const wrong = told.errors.filter(({ key }) => key in keys || !state.own && (key in FIELD_OF || blamed || lastMade()));
     if (!wrong.length) return { made, told };
     // Its lines are not those of the airframe that stays.
-    for (const fault of wrong) refuse(built, FIELD_OF[fault.key] ?? (state.own ? "" : blamed), { severity: "error", mends: [], ...fault, file: "", line: null });
+    for (const fault of wrong) refuse(built, FIELD_OF[fault.key] ?? (state.own ? "" : blamed), { ...fault, file: "", line: null });
   } catch (error) {
     if (!(error instanceof Refused)) throw error;
     const fields = error.field ? [error.field] : Object.keys(keys).map((key) => FIELD_OF[key]);
-    for (const field of fields) refuse(built, field, { severity: "error", ...error.faults[0] });
+    for (const field of fields) refuse(built, field, error.faults[0]);
   }
   return null;
 }
+// At a field the sentence needs no name of what it is about.
 function refuse(built, field, fault) {
-  if (field) built.refusals[field] ??= { ...fault, message: fault.message.replace(/^`[^`]*` = /, "") };
-  else built.faults.push(fault);
+  if (field) built.refusals[field] ??= { ...fault, message: fault.message.replace(/^(`[^`]*` = |invalid value '.*?' for '--[^']*': )/, "") };
+  else built.faults.push({ severity: "error", ...fault });
 }
 // The airframe that files and form gave last; null of the example.
 const lastMade = () => (state.made?.isExample ? null : state.made);
@@ -416,7 +398,7 @@ const lastMade = () => (state.made?.isExample ? null : state.made);
 async function settle() {
   const isExample = isPristine(), { own } = state;
   const inputs = isExample ? EXAMPLE : state, built = await build(inputs);
-  let told = null, desk = null;
+  let desk = null;
   for (const [id, read] of [["pulses", pulsesOf], ["capacity", (typed) => numberOf("capacity", typed)]]) {
     try {
       state.last[id] = read(state.form[id]);
@@ -445,7 +427,7 @@ async function settle() {
     if (!built.airframe && state.made?.isExample && !isExample) state.made = null;
     desk = state.made;
   }
-  told = desk && await check(desk);
+  const told = desk && await check(desk);
   const isTheirs = Boolean(desk && built.airframe && desk.text === built.airframe.text);
   return { ...built, help: await ask("help", built.command), isExample, desk, told, isTheirs, keys: inputs.keys };
 }
@@ -459,15 +441,13 @@ let blamed = "";
 const isSettled = () => Boolean(view) && !reading && !busy && !stale && waiting.size === 0;
 
 // Something was put in: what can be saved is not of it until it has settled. `wait` is that of someone who types.
-function changed({ wait = 0, asks: newAsks = false, typed = false } = {}) {
-  [stale, asks] = [true, newAsks];
-  if (!typed) blamed = "";
+function changed({ wait = 0, isAsked = false, field = "" } = {}) {
+  [stale, asks, blamed] = [true, isAsked, field];
   clearTimeout(timer);
   timer = setTimeout(run, wait);
   withdraw();
 }
 async function run() {
-  clearTimeout(timer);
   if (busy) return;
   busy = true;
   try {
@@ -488,7 +468,7 @@ async function run() {
 
 // What takes longer than the verdict, each step for as long as nothing newer was put in.
 async function show() {
-  const steps = [() => hover(), ...shownOutputs().map((what) => () => prepare(what)), () => drawReport()];
+  const steps = [hover, ...shownOutputs().map((what) => () => prepare(what)), drawReport];
   for (const step of steps) {
     if (stale) return;
     await step();
@@ -502,19 +482,18 @@ async function hover() {
   sceneShown = shown;
   state.drawn = scene.units;
   hand.show(scene, told.name, state.hand);
-  const at = [scene.volts?.[1] ?? 0, scene.density?.[1] ?? 0];
-  const { throttles } = await ask("mix", [0, 0, 0, scene.hover_n], ...at, []);
-  measure();
-  hovering.frame(scene.units, measured.diameter);
-  hovering.turn(throttles, []);
+  const { throttles } = await ask("mix", [0, 0, 0, scene.hover_n], scene.volts?.[1] ?? 0, scene.density?.[1] ?? 0, []);
+  sketch(throttles);
 }
 
+// Bench files of the pair.
+const maps = () => view.files.filter(({ kind }) => kind === "map");
 async function drawReport() {
   const main = $("report");
   if (!view.told?.verdict) return;
-  const maps = view.files.filter(({ kind }) => kind === "map"), of = JSON.stringify([checked.name, checked.text, maps]);
+  const of = JSON.stringify([checked.name, checked.text, maps()]);
   if (of === reportShown) return;
-  const answer = await ask("report", ...named(maps));
+  const answer = await ask("report", ...named(maps()));
   if (stale) return;
   reportShown = of;
   main.innerHTML = answer.body;
@@ -534,14 +513,14 @@ const editor = new Editor($("editor"), (text) => {
 const hand = new Hand(ask, (at) => { state.hand = at; keepSoon(); });
 const hovering = new FromAbove($("hovering"));
 
-// The frame before there is an airframe: what was drawn last, else the example.
+// The frame of the airframe; before there is one, what was drawn last, else the example.
 const EXAMPLE_UNITS = [[1, 1, [0, 5], "ccw"], [-1, 1, [3, 6], "cw"], [-1, -1, [2, 7], "ccw"], [1, -1, [1, 4], "cw"]]
   .map(([x, y, channels, upper_spin]) => ({ place_m: [0.3182 * x, 0.3182 * y], channels, upper_spin }));
-function sketch() {
-  const units = state.drawn ?? EXAMPLE_UNITS;
-  hovering.frame(units, measured.diameter);
-  hovering.turn(units.flatMap(({ channels }) => channels).map(() => null), []);
+const units = () => state.drawn ?? EXAMPLE_UNITS;
+function sketch(throttles) {
   measure();
+  hovering.frame(units(), measured.diameter);
+  hovering.turn(throttles);
 }
 // Arm, diameter and spacing as they are typed; of what is no number the last one stays. Without an arm in the form it is the scene's.
 const measured = {};
@@ -551,8 +530,7 @@ function measure() {
       measured[id] = Number(numberOf(id, state.form[id]));
     } catch {}
   }
-  const far = Math.max(...(state.drawn ?? EXAMPLE_UNITS).map(({ place_m }) => Math.hypot(...place_m)));
-  drawSide($("side"), { ...measured, arm: measured.arm || far });
+  drawSide($("side"), { ...measured, arm: measured.arm || farthest(units()) });
 }
 let keepTimer = 0;
 function keepSoon() {
@@ -575,31 +553,29 @@ function apart() {
 // The sum of it all, which a screen reader says.
 function sum() {
   const { desk, told, faults, refusals, isExample, isTheirs, pair } = view;
-  const errors = faults.filter(({ severity }) => severity === "error");
-  const names = Object.keys(refusals).map((id) => labelOf($(id)).split(",")[0].replace(/^(?=\d)/, "Thrust at "));
+  const fields = Object.keys(refusals).map((id) => labelOf($(id)).split(",")[0].replace(/^(?=\d)/, "Thrust at "));
+  const refused = [...refusedFiles.map(({ name }) => name), ...fields];
   const parts = [
-    ...refusedFiles.map(({ name }) => `${name} is refused`),
-    ...names.map((name) => `${name} is refused`),
-    ...(errors.length ? [`${plural(errors.length, "error")} in ${errors[0].file || "what the files say"}`] : []),
-    ...(asks ? ["Several airframes were dropped: choose one of those put aside"] : []),
-    ...(!desk ? [pair ? "The pair is ready: the vehicle needs its frame and arm" : "The vehicle needs its frame and arm"]
-      : told.errors.length ? [`${plural(told.errors.length, "error")} in ${desk.name}`]
-        : [`${told.name} compiles: ${plural((isTheirs ? warnings() : records("warning")).length, "warning")}, ${isTheirs && notes().length ? `${plural(notes().length, "note")}, ` : ""}${told.ms} ms`]),
-    ...(apart() && desk ? ["the airframe is not the one of files and form"] : []),
+    ...refused.map((name) => `${name} is refused`),
+    faults.length && `${plural(faults.length, "error")} in ${faults[0].file || "what the files say"}`,
+    asks && "Several airframes were dropped: choose one of those put aside",
+    !desk ? (pair ? "The pair is ready: the vehicle needs its frame and arm" : "The vehicle needs its frame and arm")
+      : told.errors.length ? `${plural(told.errors.length, "error")} in ${desk.name}`
+        : `${told.name} compiles: ${plural((isTheirs ? warnings() : records("warning")).length, "warning")}, ${isTheirs && notes().length ? `${plural(notes().length, "note")}, ` : ""}${told.ms} ms`,
+    apart() && "the airframe is not the one of files and form",
   ];
-  say((isExample ? "Ready. An example is shown: drop your files, or fill in your vehicle. " : "") + parts.join("; "),
-    Boolean(refusedFiles.length || names.length || errors.length || told?.errors.length));
+  say((isExample ? "Ready. An example is shown: drop your files, or fill in your vehicle. " : "") + parts.filter(Boolean).join("; "),
+    Boolean(refused.length || faults.length || told?.errors.length));
 }
 
-const records = (severity) => (view.told?.[`${severity}s`] ?? []).map((record) => ({ severity, mends: [], ...record }));
+const records = (severity) => (view.told?.[`${severity}s`] ?? []).map((record) => ({ severity, ...record }));
 const notes = () => view.notes.map((note) => ({ severity: "note", ...placed(note) }));
 const warnings = () => [...records("warning"), ...view.warnings.map((warning) => ({ severity: "warning", ...placed(warning) }))];
 // A note about a row names it as errors do.
 function placed(note) {
-  const file = view.files.find(({ name }) => note.message.includes(`${name}:`));
-  if (!file) return note;
-  const [, line, message] = note.message.split(`${file.name}:`).slice(1).join(`${file.name}:`).match(/^(\d+): (.*)/s) ?? [];
-  return line ? { ...note, file: file.name, line: Number(line), message } : note;
+  const [, before, line, message] = note.message.match(/^(.*?):(\d+): (.*)/s) ?? [];
+  const file = view.files.find(({ name }) => before?.endsWith(name));
+  return file ? { ...note, file: file.name, line: Number(line), message } : note;
 }
 
 // The field of an option of the command line, or none; one of `unit` by what it is the unit of.
@@ -739,13 +715,13 @@ function renderFiles() {
     })(),
     remove(file.name, "Throw away", "Throw away", () => { state.aside = state.aside.filter((other) => other !== file); }))));
   const { files, pair, report: told } = view;
-  const bench = files.filter(({ kind }) => kind === "map" || kind === "run" || kind === "pair").map(({ name, kind, points }) => `${name}: ${KINDS[kind]}${points ? `, ${plural(points, "point")}` : ""}`);
+  const bench = files.filter(({ kind }) => ["map", "run", "pair"].includes(kind)).map(({ name, kind, points }) => `${name}: ${KINDS[kind]}${points ? `, ${plural(points, "point")}` : ""}`);
   const [, measured, predicted] = told.match(/^(?:model error\s+(.*?largest torque)|to trust\s+(.*?full scale))/ms)?.map((part) => part?.replace(/\s+/g, " ")) ?? [];
   const trust = measured ? `known within ${measured}` : predicted ? `predicted: ${predicted}` : "known";
   $("read").hidden = !bench.length;
   $("read").textContent = `${bench.join("; ")}. ${pair ? `The pair is ${trust}` : "No pair was made of it yet"}.`;
-  const maps = files.filter(({ kind }) => kind === "map").map(({ name }) => name);
-  if (maps.length > 1) $("read").append(` ${maps.join(" and ")} are read as benches of one pair. Of two pairs, save the tables of each as front.toml and rear.toml, and drop both.`);
+  const [names] = named(maps());
+  if (names.length > 1) $("read").append(` ${names.join(" and ")} are read as benches of one pair. Of two pairs, save the tables of each as front.toml and rear.toml, and drop both.`);
   fill($("pair-report"), told);
   $("pair-report").closest("details").hidden = !told;
 }
@@ -762,7 +738,7 @@ function renderEditor() {
   editor.text = edited.find(({ name }) => name === state.tab)?.text ?? "";
   editor.mark(faults().filter(({ file }) => file === (state.tab || desk?.name)));
 }
-const faults = () => [...view.faults, ...(view.desk ? records("error") : []), ...warnings()].map((fault) => ({ ...fault }));
+const faults = () => [...view.faults, ...records("error"), ...warnings()];
 
 const percent = (x) => `${(100 * x).toFixed(0)} %`;
 const span = ([least, most]) => (percent(least) === percent(most) ? percent(least) : `${percent(least).slice(0, -2)} to ${percent(most)}`);
@@ -814,8 +790,8 @@ function render() {
   $("differs").querySelector("span").textContent = notice;
   $("replace").hidden = !(state.own && view.airframe && !isTheirs);
   const set = !isTheirs ? [] : Object.entries(keys).filter(([, value]) => value).map(([path, value]) => {
-    const [table, key] = path.split("."), id = Object.keys(KEYS).find((id) => KEYS[id] === path);
-    return `${key} = ${id && id !== "airmode" ? numberOf(id, value) : value} in [${table}]`;
+    const [table, key] = path.split(".");
+    return `${key} = ${valueOf(path, value)} in [${table}]`;
   });
   const shown = commands.length && (isTheirs || !desk) ? commands.join(" && ") + (set.length && isTheirs ? `  # then ${set.join(", ")}` : "") : "";
   $("made-by").hidden = !shown;
@@ -861,7 +837,7 @@ async function made(what) {
   if (what === "airframe") return view.desk;
   if (what === "pair") return view.pair;
   if (what === "sheet") return sheet();
-  if (what === "report") return { name: `${view.told.name}.html`, text: await ask("page", ...named(view.files.filter(({ kind }) => kind === "map"))) };
+  if (what === "report") return { name: `${view.told.name}.html`, text: await ask("page", ...named(maps())) };
   return ask("output", what, state.last.pulses);
 }
 // Makes a file, so that its link needs nothing more than a click: a browser drops what a page saves long after one.
@@ -914,7 +890,7 @@ $("rows").addEventListener("paste", (event) => {
 });
 $("frame-form").addEventListener("submit", (event) => event.preventDefault());
 $("example-sheet").addEventListener("click", () => {
-  add({ name: "rotor.csv", text: $("sample-sheet").textContent, chosen: "" });
+  add({ name: "rotor.csv", text: $("sample-sheet").textContent });
   Object.assign(state.form, { diameter: "0.305", spacing: "0.08", arm: state.form.arm || "0.4" });
   changed();
 });
