@@ -3,7 +3,7 @@
 "use strict";
 function element(name, properties = {}, ...children) {
   const made = document.createElement(name);
-  // Browsers of 2023 have no properties for the attributes of ARIA.
+  // Names with a hyphen are attributes: browsers of 2023 have no properties for those of ARIA.
   for (const [key, value] of Object.entries(properties)) key.includes("-") ? made.setAttribute(key, value) : made[key] = value;
   made.append(...children);
   return made;

@@ -540,13 +540,14 @@ function keepSoon() {
 
 // --- what is shown of the view
 
+const isRefused = () => view.faults.length > 0 || Object.keys(view.refusals).length > 0;
 // Why the airframe on the desk is not that of files and form; empty where it is.
 function apart() {
-  const { desk, isTheirs, isExample, airframe, refusals, faults } = view;
+  const { desk, isTheirs, airframe } = view;
   if (!desk || isTheirs) return "";
   if (state.own && airframe) return "The airframe below is not the one of files and form: it was edited, or is a file of its own.";
   if (state.own) return "The airframe below is a file of its own, or was edited; files and form do not change it.";
-  const why = Object.keys(refusals).length || faults.length ? "what was put in last is refused" : "the form has no arm yet";
+  const why = isRefused() ? "what was put in last is refused" : "the form has no arm yet";
   return `The airframe below is not the one of files and form: ${why}, and this is the last one before.`;
 }
 
@@ -620,10 +621,14 @@ function mendsOf({ key = "", message, help, mends = [], code }, field) {
 const fills = (id, value) => [`Set ${shortLabel(id)} to ${shownIn(id, value)}`, () => fillIn(id, value)];
 // Puts a value into a field, as if it was typed, and shows it.
 function fillIn(id, value) {
-  const path = KEYS[id];
-  if (path) (state.own ?? state).keys[path] = value;
-  else state.form[id] = value;
+  put(id, value);
   reveal(id);
+}
+function put(id, value) {
+  const path = KEYS[id];
+  if (!path) state.form[id] = value;
+  else if (value || state.own) (state.own ?? state).keys[path] = value;
+  else delete state.keys[path];
 }
 // Opens what a field is folded in.
 function reveal(id) {
@@ -637,9 +642,7 @@ function sentence({ message, help = "", ...more }, field = "") {
   const said = needsPair ? "The vehicle is read; its pair of rotors is not known yet" : plain(message);
   const mend = needsPair ? "drop the bench file or the data sheet of the pair above" : plain(help);
   return [said, ...(mend ? [element("br"), `Mend: ${mend}`] : []), ...mendsOf({ message, help, ...more }, field).flatMap(([textContent, apply]) => {
-    const button = element("button", { type: "button", className: "mend", textContent });
-    button.addEventListener("click", (event) => { event.preventDefault(); apply(); changed(); });
-    return [" ", button];
+    return [" ", button(textContent, () => { apply(); changed(); }, { className: "mend" })];
   })];
 }
 
@@ -648,9 +651,8 @@ function faultItem(fault) {
   const item = element("li", { className: severity }, element("b", { textContent: `${severity[0].toUpperCase()}${severity.slice(1)}: ` }));
   if (code) item.dataset.code = code;
   if (line) {
-    const place = element("button", { type: "button", className: "place", textContent: `${file}:${line}` });
-    place.addEventListener("click", () => { state.tab = file === view.desk?.name ? "" : file; renderEditor(); editor.go(line, column ?? 1); });
-    item.append(place, " ");
+    const show = () => { state.tab = file === view.desk?.name ? "" : file; renderEditor(); editor.go(line, column ?? 1); };
+    item.append(button(`${file}:${line}`, show, { className: "place" }), " ");
   } else if (file) item.append(`${file} `);
   item.append(...sentence(fault));
   return item;
@@ -665,8 +667,7 @@ function fill(table, text) {
     else if (rows.length) rows.at(-1)[1] += /^\s*\*/.test(line) ? `\n${line.trim()}` : ` ${line.trim()}`;
     else above.push(line);
   }
-  const cells = ([head, rest]) => [element("th", { scope: "row", textContent: head }), element("td", {}, ...rest.split("\n").flatMap((line) => [line, element("br")]).slice(0, -1))];
-  table.replaceChildren(element("caption", { textContent: above.join(" "), hidden: above.join("") === "" }), element("tbody", {}, ...rows.map((row) => element("tr", {}, ...cells(row)))));
+  table.replaceChildren(element("caption", { textContent: above.join(" "), hidden: !above.join("") }), element("tbody", {}, ...rows.map((words) => row(...words))));
 }
 
 // Whether the frame is that of a file, and no choice of the form has a part in it.
@@ -695,25 +696,19 @@ function renderFields() {
 }
 
 function renderFiles() {
-  const remove = (name, textContent, label, act) => {
-    const button = element("button", { type: "button", textContent, "aria-label": `${label} ${name}` });
-    button.addEventListener("click", () => { act(); changed(); });
-    return button;
-  };
+  const item = ({ name, message }, ...parts) => element("li", { className: message ? "error" : "" }, element("b", { textContent: name }), ...parts);
+  const act = ({ name }, word, action, more) => button(word, async () => { await action(); changed(); }, { "aria-label": `${word} ${name}`, ...more });
+  const without = (files, file) => files.filter((other) => other !== file);
+  const throwAway = (file) => { state.aside = without(state.aside, file); };
   $("dropped").replaceChildren(...state.files.map((file) => {
     const kinds = element("select", { "aria-label": `What ${file.name} is` }, ...Object.entries(KINDS).map(([value, textContent]) => element("option", { value, textContent })));
     kinds.value = view.files.find(({ name }) => name === file.name)?.kind ?? file.chosen;
-    kinds.addEventListener("change", () => { file.chosen = kinds.value; changed(); });
-    return element("li", {}, element("b", { textContent: file.name }), kinds, remove(file.name, "Remove", "Remove", () => { state.files = state.files.filter((other) => other !== file); }));
-  }), ...refusedFiles.map((file) => element("li", { className: "error" }, element("b", { textContent: file.name }), ` ${file.message} `,
-    remove(file.name, "Dismiss", "Dismiss", () => { refusedFiles = refusedFiles.filter((other) => other !== file); }))));
-  $("aside").replaceChildren(...state.aside.map((file) => element("li", {}, element("b", { textContent: file.name }), " put aside",
-    (() => {
-      const back = element("button", { type: "button", className: "back", textContent: "Work on it", "aria-label": `Work on ${file.name}` });
-      back.addEventListener("click", async () => { state.aside = state.aside.filter((other) => other !== file); await take(file); changed(); });
-      return back;
-    })(),
-    remove(file.name, "Throw away", "Throw away", () => { state.aside = state.aside.filter((other) => other !== file); }))));
+    kinds.onchange = () => { file.chosen = kinds.value; changed(); };
+    return item(file, kinds, act(file, "Remove", () => { state.files = without(state.files, file); }));
+  }), ...refusedFiles.map((file) => item(file, ` ${file.message} `, act(file, "Dismiss", () => { refusedFiles = without(refusedFiles, file); }))));
+  $("aside").replaceChildren(...state.aside.map((file) => item(file, " put aside",
+    act(file, "Work on it", () => { throwAway(file); return take(file); }, { className: "back", "aria-label": `Work on ${file.name}` }),
+    act(file, "Throw away", () => throwAway(file)))));
   const { files, pair, report: told } = view;
   const bench = files.filter(({ kind }) => ["map", "run", "pair"].includes(kind)).map(({ name, kind, points }) => `${name}: ${KINDS[kind]}${points ? `, ${plural(points, "point")}` : ""}`);
   const [, measured, predicted] = told.match(/^(?:model error\s+(.*?largest torque)|to trust\s+(.*?full scale))/ms)?.map((part) => part?.replace(/\s+/g, " ")) ?? [];
@@ -729,13 +724,11 @@ function renderFiles() {
 function renderEditor() {
   const { desk } = view;
   const edited = [...state.files, ...(desk ? [{ name: "", label: desk.name, text: desk.text }] : [])];
-  if (!edited.some(({ name }) => name === state.tab)) state.tab = desk ? "" : (edited[0]?.name ?? "");
-  $("tabs").replaceChildren(...edited.map(({ name, label }) => {
-    const tab = element("button", { type: "button", "aria-pressed": String(name === state.tab), textContent: label ?? name });
-    tab.addEventListener("click", () => { state.tab = name; renderEditor(); });
-    return tab;
-  }));
-  editor.text = edited.find(({ name }) => name === state.tab)?.text ?? "";
+  const shown = edited.find(({ name }) => name === state.tab) ?? edited.at(desk ? -1 : 0);
+  state.tab = shown?.name ?? "";
+  $("tabs").replaceChildren(...edited.map(({ name, label = name }) =>
+    button(label, () => { state.tab = name; renderEditor(); }, { "aria-pressed": name === state.tab })));
+  editor.text = shown?.text ?? "";
   editor.mark(faults().filter(({ file }) => file === (state.tab || desk?.name)));
 }
 const faults = () => [...view.faults, ...records("error"), ...warnings()];
@@ -747,20 +740,20 @@ const USED = 0.8;
 // The numbers that say whether a vehicle flies well, each with what is usual.
 function renderNumbers() {
   const numbers = view.told?.numbers;
-  const { volts, hover: throttles, usual_hover: usual, over_weight: ratio, yaw_nm: yaw, yaw_over_roll: share } = numbers ?? {};
+  const { volts, hover: throttles, usual_hover: usual, over_weight: ratio, yaw_nm: yaw, yaw_over_roll: share, power_w: watts } = numbers ?? {};
   const lack = !numbers ? "no airframe yet" : view.told.scene?.mass_kg === null ? "needs the mass" : throttles.length ? "" : "the weight is not carried";
   const at = volts ? ` at ${volts} V` : "";
-  const { power_w: watts } = numbers ?? {}, capacity = Number(state.last.capacity), minutes = 60 * USED * capacity / 1000 * volts / watts;
+  const capacity = Number(state.last.capacity), minutes = 60 * USED * capacity / 1000 * volts / watts;
   const rows = [
     ["Hover throttle", throttles?.map(([layer, ends]) => span(ends) + (throttles.length > 1 ? ` ${layer}` : "")).join(", "),
       usual ? `usual: ${span(usual)}${at}, where these rotors give 30 to 60 % of their largest thrust` : "usual: 30 to 60 % of the largest thrust"],
     ["Thrust over weight", ratio && ratio.toFixed(2), `usual: 1.7 to 3.3${at}`],
     ["Yaw left in hover", yaw && `${short(yaw)} N m${share ? `, ${percent(share)} of the roll` : ""}`, "usual: 2 to 10 % of the roll"],
-    ["Time in hover", minutes > 0 && Number.isFinite(minutes) && `${short(Number(minutes.toPrecision(2)))} min`,
-      watts && volts ? capacity ? `${percent(USED)} of ${capacity} mAh${at}, ${short(Number(watts.toPrecision(3)))} W` : "needs the capacity of the pack" : "needs a bench file with the power, or current and voltage"],
+    ["Time in hover", minutes > 0 && Number.isFinite(minutes) ? `${Number(minutes.toPrecision(2))} min` : lack || "not known",
+      watts && volts ? capacity ? `${percent(USED)} of ${capacity} mAh${at}, ${Number(watts.toPrecision(3))} W` : "needs the capacity of the pack" : "needs a bench file with the power, or current and voltage"],
   ];
   $("numbers").replaceChildren(...rows.map(([name, value, hint]) => element("div", {}, element("dt", { textContent: name }),
-    element("dd", {}, element("b", { textContent: value || (name === "Time in hover" && !lack ? "not known" : lack) }), element("small", { textContent: hint })))));
+    element("dd", {}, element("b", { textContent: value || lack }), element("small", { textContent: hint })))));
 }
 
 function render() {
@@ -793,7 +786,7 @@ function render() {
     const [table, key] = path.split(".");
     return `${key} = ${valueOf(path, value)} in [${table}]`;
   });
-  const shown = commands.length && (isTheirs || !desk) ? commands.join(" && ") + (set.length && isTheirs ? `  # then ${set.join(", ")}` : "") : "";
+  const shown = commands.length && (isTheirs || !desk) ? commands.join(" && ") + (set.length ? `  # then ${set.join(", ")}` : "") : "";
   $("made-by").hidden = !shown;
   $("command").textContent = shown;
   $("command-name").textContent = command;
@@ -806,17 +799,16 @@ function render() {
 
 // --- files to take along
 
-const sheet = () => view.files.find(({ name }) => name === SHEET_NAME);
 // Each output has one entry, which moves between the two lists: its link holds the file once it is made.
 const entries = Object.fromEntries(Object.entries(OUTPUTS).map(([what, [name, where]]) => {
-  const save = element("a", { className: "save", textContent: name }), notes = element("ul", { className: "list" });
-  save.dataset.output = what;
-  const item = element("li", {}, save, element("span", { textContent: ` ${where}` }), notes);
-  return [what, { item, save, notes, url: "" }];
+  const save = element("a", { className: "save", textContent: name, "data-output": what }), notes = element("ul", { className: "list" });
+  return [what, { item: element("li", {}, save, element("span", { textContent: ` ${where}` }), notes), save, notes }];
 }));
+// Files that are there before they are asked for.
+const there = () => ({ airframe: view.desk, pair: view.pair, sheet: view.files.find(({ name }) => name === SHEET_NAME) });
 function arrange() {
-  const first = OF_STACK[state.form.stack] ?? [], compiles = Boolean(view.told?.verdict);
-  const has = (what) => (what === "airframe" ? view.desk : what === "pair" ? view.pair : what === "sheet" ? sheet() : compiles);
+  const first = ofStack(state.form.stack), files = there();
+  const has = (what) => (what in files ? files[what] : view.told?.verdict);
   const place = (list, all) => list.replaceChildren(...all.filter(has).map((what) => entries[what].item));
   place($("files"), first);
   place($("others"), Object.keys(OUTPUTS).filter((what) => !first.includes(what)));
@@ -825,31 +817,28 @@ const shownOutputs = () => [...document.querySelectorAll(`#files a.save${$("more
 
 // Takes the files back that are not of what was put in.
 function withdraw() {
-  for (const entry of Object.values(entries)) {
-    if (entry.url) URL.revokeObjectURL(entry.url);
-    entry.url = "";
-    entry.save.removeAttribute("href");
-    entry.notes.replaceChildren();
+  for (const { save, notes } of Object.values(entries)) {
+    URL.revokeObjectURL(save.href);
+    save.removeAttribute("href");
+    notes.replaceChildren();
   }
 }
 
 async function made(what) {
-  if (what === "airframe") return view.desk;
-  if (what === "pair") return view.pair;
-  if (what === "sheet") return sheet();
+  if (what in there()) return there()[what];
   if (what === "report") return { name: `${view.told.name}.html`, text: await ask("page", ...named(maps())) };
   return ask("output", what, state.last.pulses);
 }
 // Makes a file, so that its link needs nothing more than a click: a browser drops what a page saves long after one.
 async function prepare(what) {
   const entry = entries[what];
-  if (entry.url) return;
+  if (entry.save.href) return;
   const note = (className, textContent) => element("li", { className, textContent });
   try {
     const { name, text, notes = [] } = await made(what);
     if (stale) return;
-    entry.url = URL.createObjectURL(new Blob([text], { type: "application/octet-stream" }));
-    Object.assign(entry.save, { href: entry.url, download: name });
+    const href = URL.createObjectURL(new Blob([text], { type: "application/octet-stream" }));
+    Object.assign(entry.save, { href, download: name });
     entry.notes.replaceChildren(...notes.map((text) => note("note", plain(text))));
   } catch (error) {
     if (!(error instanceof Refused)) throw error;
@@ -859,7 +848,7 @@ async function prepare(what) {
 
 // --- events
 
-$("choose").addEventListener("change", async () => { await drop([...$("choose").files]); $("choose").value = ""; });
+$("choose").onchange = async () => { await drop([...$("choose").files]); $("choose").value = ""; };
 for (const kind of ["dragover", "dragleave", "drop"]) {
   addEventListener(kind, (event) => {
     event.preventDefault();
@@ -868,68 +857,62 @@ for (const kind of ["dragover", "dragleave", "drop"]) {
   });
 }
 for (const id of [...FIELDS, ...Object.keys(KEYS)]) {
-  $(id).addEventListener("input", () => {
-    const typed = $(id).value.trim(), path = KEYS[id];
-    if (!path) state.form[id] = typed;
-    else if (typed || state.own) (state.own ?? state).keys[path] = typed;
-    else delete state.keys[path];
+  $(id).oninput = () => {
+    put(id, $(id).value.trim());
     refusedFiles = [];
-    if (id !== blamed) blamed = view?.told?.verdict && !Object.keys(view.refusals).length && !view.faults.length ? id : "";
+    const isBlamed = id === blamed || view?.told?.verdict && !isRefused();
     measure();
-    changed({ wait: 250, typed: true });
-  });
+    changed({ wait: 250, field: isBlamed ? id : "" });
+  };
 }
 // A row of a table that is pasted into the data sheet goes over its fields.
-$("rows").addEventListener("paste", (event) => {
+$("rows").onpaste = (event) => {
   const cells = event.clipboardData.getData("text").trim().split(/[\t\n;]+/), at = THRUSTS.indexOf(event.target.id);
   if (cells.length < 2) return;
   event.preventDefault();
   cells.slice(0, THRUSTS.length - at).forEach((cell, k) => { state.form[THRUSTS[at + k]] = cell.trim(); });
   event.target.blur();
   changed();
-});
-$("frame-form").addEventListener("submit", (event) => event.preventDefault());
-$("example-sheet").addEventListener("click", () => {
+};
+$("example-sheet").onclick = () => {
   add({ name: "rotor.csv", text: $("sample-sheet").textContent });
   Object.assign(state.form, { diameter: "0.305", spacing: "0.08", arm: state.form.arm || "0.4" });
   changed();
-});
-$("replace").addEventListener("click", () => { putAside(state.own); state.own = null; document.activeElement?.blur(); changed(); });
-$("more").addEventListener("toggle", () => { if ($("more").open && view) changed(); });
-$("share").addEventListener("click", async () => {
+};
+$("replace").onclick = () => { putAside(state.own); state.own = null; document.activeElement?.blur(); changed(); };
+$("more").ontoggle = () => { if ($("more").open && view) changed(); };
+$("share").onclick = async () => {
   if (!view?.desk) return;
   const text = await link(view.desk);
   $("link").value = text;
   $("linked").hidden = false;
   $("link").select();
   await navigator.clipboard?.writeText(text).catch(() => {});
-});
-$("stop").addEventListener("click", stop);
-// What was forgotten, until the page is left: the state and the ticks.
-let forgotten = null;
-$("unforget").addEventListener("click", () => {
-  state = forgotten.state;
-  try {
-    Object.assign(localStorage, forgotten.kept);
-  } catch {}
-  [forgotten, checked, reportShown, $("unforget").hidden] = [null, null, "", true];
-  changed();
-});
-$("forget").addEventListener("click", () => {
-  forgotten = { state, kept: {} };
+};
+$("stop").onclick = stop;
+$("forget").onclick = () => {
+  // What was forgotten, until the page is left: the state and the ticks.
+  const forgotten = state;
+  let ticks = {};
   $("unforget").hidden = false;
+  $("unforget").onclick = () => {
+    try {
+      Object.assign(localStorage, ticks);
+    } catch {}
+    $("unforget").hidden = true;
+    restart(forgotten);
+  };
   try {
-    forgotten.kept = { ...localStorage };
+    ticks = { ...localStorage };
     for (const key of Object.keys(localStorage)) if (key === KEY || key.startsWith("checks of ")) localStorage.removeItem(key);
   } catch {
     // Where the browser keeps nothing there is nothing to forget.
   }
-  [state, refusedFiles, checked, reportShown] = [fresh(), [], null, ""];
   $("linked").hidden = true;
   $("link").value = "";
   document.activeElement?.blur();
-  changed();
-});
+  restart(fresh());
+};
 
 begin();
 try {
