@@ -25,7 +25,7 @@ pub struct Arguments {
     /// Serve ArduPilot: JSON over UDP, `--model JSON`
     #[arg(long)]
     pub ardupilot: bool,
-    /// Serve Betaflight: its packets over UDP, by the wall clock times --speed
+    /// Serve Betaflight: its packets over UDP, by the wall clock
     #[arg(long)]
     pub betaflight: bool,
     /// Fly a manoeuvre: PX4 in Offboard and ArduPilot in Guided by MAVLink, Betaflight in acro mode by sticks
@@ -91,7 +91,7 @@ pub struct Arguments {
     /// Port of the MAVLink for pilot and battery: 14540 plus PX4's instance, 5760 of ArduPilot
     #[arg(long)]
     pub link: Option<u16>,
-    /// Simulated over real time, at most; 0 is as fast as the stack goes, and Betaflight takes 1 or less
+    /// Simulated over real time, at most; 0 is as fast as the stack goes; Betaflight's clock is the wall's
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = not_negative)]
     pub speed: f64,
     /// End after so much simulated time, s

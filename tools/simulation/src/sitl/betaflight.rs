@@ -1,5 +1,5 @@
 //! Betaflight's interface for outside simulators (`src/platform/SIMULATOR/sitl.c`): motors in, state and sticks out, over UDP, in
-//! the time of the wall clock times the speed of the simulation, which Betaflight takes from the states' times (`simRate`). MSP tells what keeps it from arming.
+//! the time of the wall clock, which is Betaflight's. MSP tells what keeps it from arming.
 
 pub mod arming;
 pub mod packets;
@@ -29,7 +29,7 @@ const STICKS_US: u64 = 10_000;
 /// Silence after which Betaflight has gone.
 const SILENCE: Duration = Duration::from_secs(10);
 
-/// Behind the clock by this, in simulated time, a step is late, and where Betaflight's motors are as old.
+/// Behind the clock by this a step is late, and where Betaflight's motors are as old.
 const LATE: Duration = Duration::from_millis(20);
 
 /// The name under which the record counts late steps.
@@ -41,14 +41,10 @@ const MOST_LATE: f64 = 0.001;
 /// The port of the motors, and a pilot with sticks.
 ///
 /// # Errors
-/// A port that is taken; a speed of 0 or above that of the wall clock.
+/// A port that is taken; a speed that is not that of the wall clock.
 pub fn open(arguments: &Arguments, hover_throttle: f64) -> Result<Port, String> {
-    let speed = arguments.speed;
-    if !(speed > 0.0 && speed <= 1.0) {
-        return Err(
-            "--speed: Betaflight has a clock, which runs at that of the wall (1) or slower, as 0.25"
-                .to_owned(),
-        );
+    if (arguments.speed - 1.0).abs() > 0.0 {
+        return Err("--speed: Betaflight's clock is the wall's; leave the option out".to_owned());
     }
     let port = arguments.port.unwrap_or(PORT);
     let socket = link::listen(port, None, "Betaflight", "")?;
@@ -57,7 +53,7 @@ pub fn open(arguments: &Arguments, hover_throttle: f64) -> Result<Port, String> 
         name: "Betaflight on UDP",
         address: socket.local_addr(),
         pilot: Box::new(Sticks::new(hover_throttle, arguments)),
-        serve: Box::new(move |flight, sensors| serve(&socket, port, flight, sensors, pulses, speed)),
+        serve: Box::new(move |flight, sensors| serve(&socket, port, flight, sensors, pulses)),
     })
 }
 
@@ -68,7 +64,6 @@ fn serve(
     flight: &mut Flight,
     sensors: &mut Sensors,
     pulses: [f64; 2],
-    speed: f64,
 ) -> Result<End, String> {
     let send = |further: u16, values: &[u8]| {
         // Nobody may be there yet.
@@ -76,7 +71,7 @@ fn serve(
     };
     let (mut throttles, mut heard, mut late, mut steps) = (Throttles::zeros(), None::<Instant>, 0, 0);
     let mut bytes = [0; 512];
-    let (begun, late_by) = (Instant::now(), LATE.div_f64(speed));
+    let begun = Instant::now();
     loop {
         while let Ok(count) = socket.recv(&mut bytes) {
             if let Some(new) = motors(&bytes[..count], pulses) {
@@ -97,9 +92,8 @@ fn serve(
             send(STICKS, &channels(flight.world.time_s(), &pilot.sticks()));
         }
         steps += 1;
-        let is_behind =
-            begun.elapsed() > Duration::from_micros(flight.world.time_us).div_f64(speed) + late_by;
-        late += u64::from(is_behind || heard.is_some_and(|heard| heard.elapsed() > late_by));
+        let is_behind = begun.elapsed() > Duration::from_micros(flight.world.time_us) + LATE;
+        late += u64::from(is_behind || heard.is_some_and(|heard| heard.elapsed() > LATE));
         match end {
             Ok(None) => {}
             Ok(Some(end)) => {
@@ -118,7 +112,7 @@ fn in_time(late: u64, steps: u64) -> Result<(), String> {
     }
     Err(format!(
         "{late} of {steps} {LATE_STEPS}: sitl or Betaflight had no processor, and what was flown is \
-         not the mixer's. On a machine with other work, let time pass more slowly: `--speed 0.25`"
+         not the mixer's. End other work, or give both a real-time priority (`chrt -f 50`)"
     ))
 }
 
