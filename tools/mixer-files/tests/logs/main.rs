@@ -341,15 +341,26 @@ fn a_rotor_that_stops_is_told() {
 /// Share of its throttle that the weak rotor lacks.
 const WEAK: f32 = 0.06;
 
+/// A topic that others name as the format of their fields has no rows.
+fn nothing(_: f64) -> Vec<f32> {
+    Vec::new()
+}
+
 /// PX4's speeds of the rotors, with a time of eight bytes, a speed and the function of the output for each of them.
-fn speeds<'a>(format: &'a Topic<'a>, rows: Rows<'a>) -> Vec<Topic<'a>> {
+fn speeds(rows: Rows<'_>) -> Vec<Topic<'_>> {
+    let format = Topic {
+        name: "esc_report",
+        fields: "float esc_rpm;float actuator_function;",
+        period_s: f64::INFINITY,
+        rows: &nothing,
+    };
     let escs = Topic {
         name: "esc_status",
         fields: "float esc_online_flags;esc_report[8] esc;",
         period_s: 0.1,
         rows,
     };
-    vec![Topic { ..*format }, escs]
+    vec![format, escs]
 }
 
 /// A throttle and a speed per rotor as PX4 logs them: online, and of each a time, the speed and who it is.
@@ -362,12 +373,6 @@ fn esc_row(speed: &[f32]) -> Vec<f32> {
 #[test]
 fn a_weak_rotor_is_told_from_a_moved_centre() {
     let compiled = compiled();
-    let format = Topic {
-        name: "esc_report",
-        fields: "float esc_rpm;float actuator_function;",
-        period_s: f64::INFINITY,
-        rows: &|_| Vec::new(),
-    };
     // What turns the rotors, with the speed that it gives them: output 2 has less of it where it is weak.
     let logged = |is_weak: bool, stops_s: f64| {
         let of = |time_s: f64| -> Vec<[f32; 2]> {
@@ -386,12 +391,7 @@ fn a_weak_rotor_is_told_from_a_moved_centre() {
         };
         let motors = |time_s: f64| of(time_s).iter().map(|[told, _]| *told).collect();
         let escs = |time_s: f64| esc_row(&of(time_s).iter().map(|[_, speed]| *speed).collect::<Vec<_>>());
-        review(&px4_log_with(
-            &px4_frame(&compiled),
-            &motors,
-            speeds(&format, &escs),
-        ))
-        .unwrap()
+        review(&px4_log_with(&px4_frame(&compiled), &motors, speeds(&escs))).unwrap()
     };
     let has = |review: &Review, words: &str| review.warnings.iter().any(|warning| warning.contains(words));
     let moved = logged(false, SECONDS);
@@ -428,12 +428,6 @@ fn a_weak_rotor_is_told_from_a_moved_centre() {
 fn rotors_lag_is_found_where_speeds_are_logged() {
     const LAG_S: f64 = 0.07;
     let compiled = compiled();
-    let format = Topic {
-        name: "esc_report",
-        fields: "float esc_rpm;float actuator_function;",
-        period_s: f64::INFINITY,
-        rows: &|_| Vec::new(),
-    };
     let wander = |rotor: usize, time_s: f64, lag_s: f64| {
         let of = |(k, w): (usize, f64)| {
             let phase = w * time_s + (3 * rotor + 5 * k) as f64 - libm::atan(w * lag_s);
@@ -467,7 +461,7 @@ fn rotors_lag_is_found_where_speeds_are_logged() {
                     .collect::<Vec<_>>(),
             )
         };
-        let mut topics = speeds(&format, &escs);
+        let mut topics = speeds(&escs);
         topics[1].period_s = period_s;
         topics.push(Topic {
             name: "actuator_motors",
