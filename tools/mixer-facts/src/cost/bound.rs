@@ -14,13 +14,13 @@ use mixer_compiler::tables::ClosedFormTable;
 
 /// Checks, a request brought down to what products do not overflow with; a correction of voltage or of density,
 /// and each piece of its table.
-const MIX: u32 = 330;
+const MIX: u32 = 310;
 const CORRECTION: u32 = 70;
 const PIECE: u32 = 10;
 
 /// One unit beside its inverse and forward map: least norm twice, its throttles, its share of the achieved wrench.
-const UNIT: u32 = 240;
-const FORWARD: u32 = 75;
+const UNIT: u32 = 235;
+const FORWARD: u32 = 60;
 
 /// A step of the facets' linear programme, and one pair of facets in it.
 const STEP: u32 = 30;
