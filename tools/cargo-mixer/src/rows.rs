@@ -58,7 +58,7 @@ pub(crate) fn throttles(airframe: &Airframe) -> Vec<String> {
 /// Values as fields: `{:?}` is the shortest text that reads back to the same bits.
 pub(crate) fn fields(values: impl IntoIterator<Item = impl std::fmt::Debug>) -> String {
     let values = values.into_iter().map(|value| format!("{value:?}"));
-    values.collect::<Vec<_>>().join(",")
+    itertools::join(values, ",")
 }
 
 /// The health of an airframe of which these channels are out.

@@ -33,7 +33,7 @@ impl fmt::Display for Checklist<'_> {
                 let (channel, spin) = (rotor.channel, rotor.spin.in_words());
                 format!("output {channel} {}, {spin}", rotor.layer)
             });
-            let rotors = rotors.collect::<Vec<_>>().join("; ");
+            let rotors = itertools::join(rotors, "; ");
             writeln!(f, "  unit {index:<9} {}: {rotors}", place(unit, units))?;
         }
         for axis in Axis::ALL {
@@ -75,7 +75,7 @@ impl Checklist<'_> {
         let groups = by_rise
             .into_iter()
             .map(|(rise, outputs)| format!("{} by {:.3}", outputs.join(", "), -f64::from(rise) / 1000.0));
-        Some(groups.collect::<Vec<_>>().join("; "))
+        Some(itertools::join(groups, "; "))
     }
 
     /// The outputs that rise where 2 % of the axis' size is asked, in order, each with the rise of

@@ -36,7 +36,7 @@ pub const LONGEST_LINE: usize = 1000;
 pub fn print_note(message: impl Display) {
     let text = printable_lines(&message.to_string());
     let lines = text.split('\n').map(|line| cut_to(line.to_owned(), LONGEST_LINE));
-    let _ = writeln!(io::stderr().lock(), "{}", lines.collect::<Vec<_>>().join("\n"));
+    let _ = writeln!(io::stderr().lock(), "{}", itertools::join(lines, "\n"));
 }
 
 /// Says on stderr what the user of an output has to know of it, as a `note` or a `warning`.

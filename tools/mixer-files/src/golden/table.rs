@@ -23,8 +23,8 @@ pub(super) fn rotors_out(compiled: &Compiled, vectors: &[(Health, Vector)]) -> S
     let rotors = compiled.airframe.rotors() as u8;
     for (health, vector) in vectors {
         let failed = (0..rotors).filter(|channel| health.has_failed(*channel));
-        let failed: Vec<String> = failed.map(|channel| channel.to_string()).collect();
-        let _ = write!(table, "{},", failed.join("+"));
+        let failed = failed.map(|channel| channel.to_string());
+        let _ = write!(table, "{},", itertools::join(failed, "+"));
         push_row(&mut table, compiled, vector, *health);
     }
     table

@@ -64,8 +64,8 @@ pub(super) fn tables(imported: &mut Imported, units: &[Unit], pair: Option<&Pair
             unit.upper_spin.name()
         )
     };
-    let units: Vec<String> = units.iter().enumerate().map(unit).collect();
-    out += &units.join("\n");
+    let units = units.iter().enumerate().map(unit);
+    out += &itertools::join(units, "\n");
     out
 }
 

@@ -101,6 +101,6 @@ fn pulses(rotors: &[Rotor]) -> Option<String> {
     });
     Some(format!(
         "the outputs have several ranges of pulses: {}; the pair was measured with one for both rotors",
-        told.collect::<Vec<_>>().join("; ")
+        itertools::join(told, "; ")
     ))
 }

@@ -1,5 +1,6 @@
 //! The headers and the CMake file.
 
+use itertools::Itertools;
 use std::fmt::Display;
 
 use mixer_compiler::airframe::Correction;
@@ -220,7 +221,7 @@ fn float(value: f32) -> String {
 /// Rows of a table of C.
 fn rows<const N: usize>(rows: &[[f64; N]]) -> String {
     let row = |row: &[f64; N]| format!("{{{}}}", row.map(|value| float(value as f32)).join(", "));
-    rows.iter().map(row).collect::<Vec<_>>().join(", \\\n    ")
+    rows.iter().map(row).join(", \\\n    ")
 }
 
 /// Text that ends no comment and begins none, on one line.

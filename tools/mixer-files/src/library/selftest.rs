@@ -75,13 +75,10 @@ fn worth(compiled: &Compiled, rows: &[Vector]) -> String {
             .mix_dynamic(&mut state, wrench, *conditions, Health::GOOD, 0.004);
     }
     let worth = &state.worth[..compiled.airframe.rotors()];
-    let bits: Vec<String> = worth
-        .iter()
-        .map(|worth| format!("{:#x}u", worth.to_bits()))
-        .collect();
+    let bits = worth.iter().map(|worth| format!("{:#x}u", worth.to_bits()));
     format!(
         "\n/* What the rotors are worth after all rows, each held for 4 ms. */\nstatic const uint32_t worth[] = {{{}}};\n",
-        bits.join(", ")
+        itertools::join(bits, ", ")
     )
 }
 
@@ -104,8 +101,8 @@ fn row(
         Err(error) => (error.status(), vec![0; compiled.airframe.rotors() + 5]),
     };
     let list = |bits: &[u32]| -> String {
-        let words: Vec<String> = bits.iter().map(|bits| format!("{bits:#x}u")).collect();
-        words.join(", ")
+        let words = bits.iter().map(|bits| format!("{bits:#x}u"));
+        itertools::join(words, ", ")
     };
     let [roll, pitch, yaw, thrust] = wrench.to_array().map(f32::to_bits);
     let [volts, density] =

@@ -28,8 +28,10 @@ pub(crate) fn back(name: &str) -> Option<Back> {
 /// The parameters of a stack that stay as they are.
 pub(crate) fn stays(stack: Stack) -> String {
     let stay = writer(stack).read.iter().filter(|(back, _)| *back == Back::Stays);
-    let names: Vec<&str> = stay.flat_map(|(_, names)| names.iter().copied()).collect();
-    names.join(", ").replace('*', "PWM_MAIN").replace('#', "n")
+    let names = stay.flat_map(|(_, names)| names.iter().copied());
+    itertools::join(names, ", ")
+        .replace('*', "PWM_MAIN")
+        .replace('#', "n")
 }
 
 #[cfg(test)]

@@ -156,8 +156,8 @@ pub(crate) fn cell(x: f64) -> String {
 
 /// Numbers as a row of CSV.
 pub(crate) fn line(values: impl IntoIterator<Item = f64>) -> String {
-    let cells: Vec<String> = values.into_iter().map(cell).collect();
-    cells.join(",")
+    let cells = values.into_iter().map(cell);
+    itertools::join(cells, ",")
 }
 
 #[cfg(test)]

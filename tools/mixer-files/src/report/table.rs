@@ -58,8 +58,8 @@ pub fn units(study: &Study<'_>) -> Markup {
                     rotor.channel + 1
                 )
             };
-            let rotors: Vec<String> = unit.rotors().map(told).collect();
-            vec![index.to_string(), x, y, z, rotors.join("; ")]
+            let rotors = unit.rotors().map(told);
+            vec![index.to_string(), x, y, z, itertools::join(rotors, "; ")]
         })
         .collect();
     let caption = "From the centre of gravity: x forward, y right, z down";

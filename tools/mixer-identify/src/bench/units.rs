@@ -70,8 +70,8 @@ pub fn normalised(text: &str) -> String {
             c => c,
         })
         .collect();
-    let words: Vec<&str> = folded.split_whitespace().collect();
-    words.join(" ").to_lowercase()
+    let words = folded.split_whitespace();
+    itertools::join(words, " ").to_lowercase()
 }
 
 /// Units of each quantity, the first spelling for messages, and how to read them.
@@ -161,10 +161,8 @@ pub fn scale(quantity: Quantity, unit: &str) -> Option<Scale> {
 /// The units that `scale` knows, for messages.
 pub fn known(quantity: Quantity) -> String {
     let units = UNITS.iter().filter(|(of, ..)| *of == quantity);
-    let names: Vec<&str> = units
-        .filter_map(|(_, names, _)| names.split(' ').next())
-        .collect();
-    names.join(", ")
+    let names = units.filter_map(|(_, names, _)| names.split(' ').next());
+    itertools::join(names, ", ")
 }
 
 #[cfg(test)]

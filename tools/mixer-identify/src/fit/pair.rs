@@ -171,8 +171,8 @@ pub(crate) fn identify(
 
 /// The files, by their names.
 pub(crate) fn names<'a>(benches: impl IntoIterator<Item = &'a Bench>) -> String {
-    let names: Vec<&str> = benches.into_iter().map(|b| b.file.as_str()).collect();
-    names.join(", ")
+    let names = benches.into_iter().map(|b| b.file.as_str());
+    itertools::join(names, ", ")
 }
 
 /// The box to command: the user's, or the measured one.

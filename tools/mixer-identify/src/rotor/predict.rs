@@ -171,8 +171,14 @@ pub fn correct(
     if !maps.is_empty() {
         advise(&case, &mut warnings);
     }
-    let names: Vec<&str> = runs.iter().map(|run| run.file.as_str()).collect();
-    let found = agreed(general, &case, &names.join(" and "), &places, &mut warnings)?;
+    let names = runs.iter().map(|run| run.file.as_str());
+    let found = agreed(
+        general,
+        &case,
+        &itertools::join(names, " and "),
+        &places,
+        &mut warnings,
+    )?;
     let uncertainty = uncertainty(general, &runs, &case, &found, throttle);
     let constants = found.interaction;
     let factors = found.factors.first().copied().unwrap_or([1.0; 3]);

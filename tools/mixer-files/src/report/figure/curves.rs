@@ -14,7 +14,7 @@ impl Figure {
         let [x, y] = [0, 1].map(|k| column(&self.axes[k].label));
         // Names have commas, and no quotes.
         let names = self.series.iter().map(|(name, _)| format!("\"{y}, {name}\""));
-        let header: Vec<String> = once(x).chain(names).collect();
+        let header = once(x).chain(names);
         let finite = |points: &[[f64; 2]]| -> Vec<[f64; 2]> {
             let points = points.iter().filter(|point| point.iter().all(|x| x.is_finite()));
             points.copied().collect()
@@ -28,13 +28,13 @@ impl Figure {
             points.into_iter().map(|[x, y]| (cell(x), cell(y))).collect()
         };
         let curves: Vec<_> = curves.into_iter().map(heights).collect();
-        let mut csv = header.join(",") + "\n";
+        let mut csv = itertools::join(header, ",") + "\n";
         for place in &places {
             let heights = curves
                 .iter()
                 .map(|curve| curve.get(place).map_or("", String::as_str));
-            let row: Vec<&str> = once(place.as_str()).chain(heights).collect();
-            csv += &(row.join(",") + "\n");
+            let row = once(place.as_str()).chain(heights);
+            csv += &(itertools::join(row, ",") + "\n");
         }
         (!self.series.is_empty()).then_some(csv)
     }

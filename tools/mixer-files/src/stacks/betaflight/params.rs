@@ -50,10 +50,9 @@ fn geometry(compiled: &Compiled, options: &Options, all: &mut Parameters) -> Res
             true => format!("{word} (written)"),
             false => (*word).to_owned(),
         });
-    let versions: Vec<String> = versions.collect();
     all.note(format!(
         "idle, hover and the curve of thrust_linear have other names and forms from version to version: {}, each with what follows it",
-        versions.join(", ")
+        itertools::join(versions, ", ")
     ));
     let own = compiled.betaflight_factors();
     if own.len() > MOST_MOTORS {

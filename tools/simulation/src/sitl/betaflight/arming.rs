@@ -1,5 +1,6 @@
 //! Asks Betaflight by MSP what keeps it from arming.
 
+use itertools::Itertools;
 use std::io::{Read, Write};
 use std::net::{Ipv4Addr, TcpStream};
 use std::time::Duration;
@@ -71,7 +72,7 @@ fn held(count: usize, flags: u32) -> String {
         None => COAXIAL.to_owned(),
     };
     let bits = (0..count.saturating_sub(1)).filter(|bit| flags >> bit & 1 == 1);
-    bits.map(name).collect::<Vec<_>>().join(", ")
+    bits.map(name).join(", ")
 }
 
 #[cfg(test)]
