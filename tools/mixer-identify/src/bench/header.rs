@@ -237,8 +237,12 @@ impl Columns {
     pub(crate) fn refusal(place: &str, headers: &[impl AsRef<str>], lacks: Vec<Lack>) -> Refusal {
         let (what, mut mends): (Vec<String>, Vec<String>) = lacks.into_iter().unzip();
         mends.dedup();
-        let headers: Vec<&str> = headers.iter().map(AsRef::as_ref).collect();
-        let reason = format!("{}; the columns are {}", what.join("; "), headers.join(", "));
+        let headers = headers.iter().map(AsRef::as_ref);
+        let reason = format!(
+            "{}; the columns are {}",
+            what.join("; "),
+            itertools::join(headers, ", ")
+        );
         Refusal::of(place, reason, mends.join("; "))
     }
 
@@ -295,34 +299,12 @@ impl Columns {
         }
     }
 
+    /// Takes the columns whose names say what they measure, but for roles that are given by hand.
     fn by_name(&mut self, headings: &[Heading], names: &[Name], by_hand: &ByHand, lacks: &mut Vec<Lack>) {
-        use Quantity::{Current, Power, Speed, Throttle, Thrust, Torque, Voltage};
+        use Quantity::{Throttle, Thrust, Torque, Voltage};
         let prefixes = distinct_prefixes(names);
-        let place = |(index, name): (usize, &Name)| {
-            let quantity = name.quantity()?;
-            let side = match (quantity, name.side(&prefixes)) {
-                (Throttle | Voltage | Speed, None) => Some(0),
-                (Throttle | Thrust | Torque | Voltage | Current | Power | Speed, side) => side,
-                _ => None,
-            };
-            Some((index, quantity, side))
-        };
-        let mut places: Vec<_> = names.iter().enumerate().filter_map(place).collect();
-        let is_thrust = |at: &(usize, Quantity, _)| at.1 == Thrust && !names[at.0].is_force();
-        if places.iter().any(is_thrust) {
-            places.retain(|at| at.1 != Thrust || is_thrust(at));
-        }
-        // Beside a column of the quantity one in a unit of something else, as the load cell's millivolts, is another's.
-        let is_other = |&(index, quantity, _): &(usize, Quantity, Option<usize>)| {
-            let unit = names[index].unit.as_ref().or(headings[index].below.as_ref());
-            unit.is_some_and(|unit| units::scale(quantity, unit).is_none())
-        };
-        let is_rival = |one: &&(usize, Quantity, Option<usize>)| {
-            let mut same = places.iter().filter(|two| (two.1, two.2) == (one.1, one.2));
-            !is_other(one) || same.all(is_other)
-        };
-        for &(index, quantity, side) in places.iter().filter(is_rival) {
-            let (name, heading) = (&names[index], &headings[index]);
+        for (index, quantity, side) in places(headings, names, &prefixes) {
+            let name = &names[index];
             let role = ROLES.iter().find(|(_, of, at)| (*of, *at) == (quantity, side));
             let Some(&(role, ..)) = role else { continue };
             if by_hand.columns.iter().any(|(r, _)| r == role) {
@@ -330,50 +312,101 @@ impl Columns {
             }
             // Power and air are by-products: what is doubtful there refuses no map.
             let aside = !matches!(quantity, Throttle | Thrust | Torque | Voltage) || role == "lower_voltage";
+            let (column, lack) = scaled(index, &headings[index], name, quantity, role, by_hand);
             let slot = self.slot(quantity, side);
-            if let Some(first) = slot {
-                // Two columns for one role: guessing would be silent. Detail of the first two.
-                let (same, second) = (
-                    first.clone(),
-                    scaled(index, heading, name, quantity, role, by_hand),
-                );
-                let (first, raw) = (&first.name, &name.raw);
-                let both = format!("both look like the {role}");
-                if !aside && !lacks.iter().any(|(what, _)| what.ends_with(&both)) {
-                    // Of names that say no side the one that is told of may be either rotor's.
-                    let mend = match (quantity, name.side(&prefixes)) {
-                        (Throttle, None) => format!(
-                            "{} of one rotor; of two --column upper=HEADER and --column lower=HEADER",
-                            named("throttle", &format!("{raw:?}"))
-                        ),
-                        _ if first == raw => {
-                            let same = headings.iter().map(|heading| &heading.name).enumerate();
-                            let same: Vec<usize> =
-                                same.filter(|(_, name)| *name == raw).map(|(k, _)| k).collect();
-                            by_number(role, &same)
-                        }
-                        _ => named(role, &format!("{raw:?}")),
-                    };
-                    let lack = (format!("the columns {first:?} and {raw:?} {both}"), mend);
-                    let (second, unknown) = second;
-                    let scales = [&same, &second].map(|column| column.unit.is_some().then_some(column.scale));
-                    match unknown.is_none() && scales[0] != scales[1] && !scales.contains(&None) {
-                        true => self.twins.push(([same, second], lack)),
-                        false => lacks.push(lack),
-                    }
+            match slot {
+                None if aside && lack.is_some() => (),
+                None => {
+                    *slot = Some(column);
+                    lacks.extend(lack);
+                    self.sides_named |= quantity == Throttle && name.says_upper_or_lower();
                 }
-                continue;
+                Some(_) if aside => (),
+                Some(first) => {
+                    let both = [first.clone(), column];
+                    let is_known = lack.is_none();
+                    self.twice(
+                        role,
+                        both,
+                        is_known,
+                        name.side(&prefixes).is_some(),
+                        headings,
+                        lacks,
+                    );
+                }
             }
-            match scaled(index, heading, name, quantity, role, by_hand) {
-                (_, Some(_)) if aside => continue,
-                (column, lack) => (*slot, _) = (Some(column), lacks.extend(lack)),
-            }
-            self.sides_named |= quantity == Throttle && name.says_upper_or_lower();
         }
         if self.format == NEWDEXTERITY {
             self.sides_named = true; // on this platform the left rotor is the upper one
         }
     }
+
+    /// Two columns for one role: guessing would be silent. Only two units may tell one of them.
+    fn twice(
+        &mut self,
+        role: &str,
+        columns: [Column; 2],
+        is_known: bool,
+        says_side: bool,
+        headings: &[Heading],
+        lacks: &mut Vec<Lack>,
+    ) {
+        let [first, second] = columns.each_ref().map(|column| &column.name);
+        let both = format!("both look like the {role}");
+        // Of several the first two are told.
+        if lacks.iter().any(|(what, _)| what.ends_with(&both)) {
+            return;
+        }
+        let mend = match columns[1].quantity {
+            // Of names that say no side the one that is told of may be either rotor's.
+            Quantity::Throttle if !says_side => format!(
+                "{} of one rotor; of two --column upper=HEADER and --column lower=HEADER",
+                named("throttle", &format!("{second:?}"))
+            ),
+            _ if first == second => {
+                let same = (0..headings.len()).filter(|&k| headings[k].name == *second);
+                by_number(role, &same.collect::<Vec<_>>())
+            }
+            _ => named(role, &format!("{second:?}")),
+        };
+        let lack = (format!("the columns {first:?} and {second:?} {both}"), mend);
+        let scales = columns
+            .each_ref()
+            .map(|column| column.unit.is_some().then_some(column.scale));
+        match is_known && scales[0] != scales[1] && !scales.contains(&None) {
+            true => self.twins.push((columns, lack)),
+            false => lacks.push(lack),
+        }
+    }
+}
+
+/// Index, quantity and rotor of the columns whose names say them.
+fn places(headings: &[Heading], names: &[Name], prefixes: &[&str]) -> Vec<(usize, Quantity, Option<usize>)> {
+    use Quantity::{Current, Power, Speed, Throttle, Thrust, Torque, Voltage};
+    let place = |(index, name): (usize, &Name)| {
+        let quantity = name.quantity()?;
+        let side = match (quantity, name.side(prefixes)) {
+            (Throttle | Voltage | Speed, None) => Some(0),
+            (Throttle | Thrust | Torque | Voltage | Current | Power | Speed, side) => side,
+            _ => None,
+        };
+        Some((index, quantity, side))
+    };
+    let mut places: Vec<_> = names.iter().enumerate().filter_map(place).collect();
+    let is_thrust = |at: &(usize, Quantity, _)| at.1 == Thrust && !names[at.0].is_force();
+    if places.iter().any(is_thrust) {
+        places.retain(|at| at.1 != Thrust || is_thrust(at));
+    }
+    // Beside a column of the quantity one in a unit of something else, as the load cell's millivolts, is another's.
+    let is_other = |&(index, quantity, _): &(usize, Quantity, Option<usize>)| {
+        let unit = names[index].unit.as_ref().or(headings[index].below.as_ref());
+        unit.is_some_and(|unit| units::scale(quantity, unit).is_none())
+    };
+    let is_rival = |one: &(usize, Quantity, Option<usize>)| {
+        let mut same = places.iter().filter(|two| (two.1, two.2) == (one.1, one.2));
+        !is_other(one) || same.all(is_other)
+    };
+    places.iter().copied().filter(is_rival).collect()
 }
 
 /// A speed as a throttle: its share of the speed at full throttle.
@@ -403,10 +436,10 @@ pub fn is_unit(name: &str, unit: &str) -> bool {
 
 /// The refusal of a role that does not exist.
 pub fn unknown_role(role: &str) -> Refusal {
-    let roles: Vec<&str> = ROLES.iter().map(|(r, ..)| *r).collect();
+    let roles = ROLES.iter().map(|(r, ..)| *r);
     Refusal::general(
         format!("unknown role {role:?}"),
-        format!("one of: {}", roles.join(", ")),
+        format!("one of: {}", itertools::join(roles, ", ")),
     )
 }
 
@@ -432,7 +465,7 @@ fn by_number(role: &str, columns: &[usize]) -> String {
     let numbers = columns
         .iter()
         .map(|column| named(role, &format!("#{}", column + 1)));
-    numbers.collect::<Vec<_>>().join(" or ")
+    itertools::join(numbers, " or ")
 }
 
 /// The columns that a text names: by its number, its name, its name spelled otherwise, or its name without unit.
