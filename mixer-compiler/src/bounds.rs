@@ -6,7 +6,7 @@ pub(crate) mod interval;
 const HALVINGS: usize = 52;
 
 /// The least number of a range from which on `is_beyond` holds, by bisection; its end where that holds nowhere.
-pub(crate) fn bisected([mut low, mut high]: [f64; 2], is_beyond: impl Fn(f64) -> bool) -> f64 {
+pub fn bisected([mut low, mut high]: [f64; 2], is_beyond: impl Fn(f64) -> bool) -> f64 {
     for _ in 0..HALVINGS {
         let middle = 0.5 * (low + high);
         if is_beyond(middle) {

@@ -62,6 +62,7 @@ pub use compiled::Compiled;
 use compiled::OfPair;
 #[cfg(feature = "unstable")]
 pub use {
+    bounds::bisected,
     compiled::OfPair,
     inverse::evaluator,
     plausible::{ARDUPILOT_MOST_SPIN_MIN, symmetry},

@@ -27,8 +27,8 @@
 //! the paper gives nothing to model them by: drag, ground effect, wake between units. The rotors' inertia about axes in their plane is the frame's.
 
 use mixer_compiler::airframe::Airframe;
-use mixer_compiler::atmosphere;
 use mixer_compiler::flywheel::{self, Flywheel};
+use mixer_compiler::{atmosphere, bisected};
 use nalgebra::{Quaternion, SVector, Vector3};
 
 use crate::battery::Battery;
@@ -189,12 +189,7 @@ impl<const R: usize> Plant<R> {
             let (force, _) = self.rotor_wrench(&self.alike(throttle), &SVector::zeros());
             -force.z > self.body.mass_kg * GRAVITY_M_S2
         };
-        let [mut low, mut high] = [0.0, 1.0];
-        for _ in 0..60 {
-            let middle = 0.5 * (low + high);
-            *(if lifts(middle) { &mut high } else { &mut low }) = middle;
-        }
-        lifts(1.0).then_some(high)
+        lifts(1.0).then(|| bisected([0.0, 1.0], lifts))
     }
 
     /// Current of the battery, A.
