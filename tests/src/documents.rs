@@ -44,7 +44,20 @@ pub fn tables() -> Result<Vec<Table>, String> {
         of("docs/air.md", "density", tables::density()),
         of("docs/air.md", "level-thrust", tables::level_thrust()?),
         of("docs/flights.md", "drawn", flown::drawn()?),
-        of("docs/flights.md", "betaflight", flown::turned("betaflight")?),
+        of("docs/flights.md", "ardupilot", flown::in_ardupilot()?),
+        of("docs/flights.md", "betaflight", flown::in_betaflight()?),
+        of("docs/flights.md", "px4-conditions", flown::conditions("px4")?),
+        of("docs/flights.md", "px4-manoeuvres", flown::manoeuvres("px4")?),
+        of(
+            "docs/flights.md",
+            "ardupilot-conditions",
+            flown::conditions("ardupilot")?,
+        ),
+        of(
+            "docs/flights.md",
+            "ardupilot-manoeuvres",
+            flown::manoeuvres("ardupilot")?,
+        ),
         of("docs/flights.md", "hover", tables::hover()?),
         of("docs/flights.md", "tracking", tables::tracking()?),
     ]);
