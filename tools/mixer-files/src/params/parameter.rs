@@ -163,9 +163,10 @@ impl OwnCurve {
         }
     }
 
-    /// The factor in [0, 1], to two decimals, with which the frame's thrust changes least while it yaws: rotors of one spin rise
-    /// from hover, or from half of the largest thrust where the mass is not known, by up to a third of their throttle, and the
-    /// others fall by the same share of the thrust. Least squares.
+    /// The factor in [0, 1], to two decimals, with which the frame's thrust changes least while it yaws, in the mean of both senses:
+    /// rotors of one spin rise from hover, or from half of the largest thrust where the mass is not known, by up to a third of their
+    /// throttle, and the others fall by the same share of the thrust. Least squares. Where upper rotors turn alike, as on a Y6, one
+    /// sense lifts more than the other: that is in proportion to the torque, and no factor changes it.
     pub(crate) fn steadiest(&self, compiled: &Compiled) -> f64 {
         let physics = compiled.physics();
         let [idle, top] = self.range;
@@ -188,8 +189,7 @@ impl OwnCurve {
             let level_n = change(a, 0.0, 1.0);
             let largest = (LARGEST_RISE * hover).min(1.0 - hover);
             let rises = (1..=RISES).map(|k| largest * f64::from(k) / f64::from(RISES));
-            let changes =
-                rises.flat_map(|rise| [1.0, -1.0].map(|sense| change(a, rise, sense) / level_n - 1.0));
+            let changes = rises.map(|rise| change(a, rise, 1.0) + change(a, rise, -1.0) - 2.0 * level_n);
             changes.map(|change| change * change).sum::<f64>()
         };
         let tried = (0..=100)
@@ -239,27 +239,34 @@ mod tests {
 
     use super::*;
 
-    /// Rotors that take no notice of each other, each with 9 d^2 + 6 d.
-    fn isolated() -> Compiled {
-        let text = "name = \"a\"\n[throttle]\nmin = 0.1\nmax = 1.0\n[vehicle]\nmass_kg = 3.0\n\
-                    [pair]\nbasis = \"cubic\"\nupper_spin = \"cw\"\n\
-                    thrust_n = [0, 0, 0, 0, 9, 0, 9, 6, 6]\ntorque_nm = [0, 0, 0, 0, -0.18, 0, 0.18, -0.12, 0.12]\n\
-                    [layout]\narm_m = 0.4\nunits = 4\nfirst_angle_deg = 45.0\n";
+    /// Rotors that take no notice of each other: the upper ones with 9 d^2 + 6 d, the lower ones with a share of it.
+    fn isolated(units: u32, lower: f64) -> Compiled {
+        let [square, line] = [9.0 * lower, 6.0 * lower];
+        let [torque, torque_line] = [0.02 * square, 0.02 * line];
+        let text = format!(
+            "name = \"a\"\n[throttle]\nmin = 0.1\nmax = 1.0\n[vehicle]\nmass_kg = 2.0\n\
+             [pair]\nbasis = \"cubic\"\nupper_spin = \"cw\"\n\
+             thrust_n = [0, 0, 0, 0, 9, 0, {square}, 6, {line}]\n\
+             torque_nm = [0, 0, 0, 0, -0.18, 0, {torque}, -0.12, {torque_line}]\n\
+             [layout]\narm_m = 0.4\nunits = {units}\nfirst_angle_deg = 45.0\n"
+        );
         mixer_compiler::compile(&Source::new("a.toml", text)).unwrap()
     }
 
-    /// They have one factor with which yaw leaves the thrust alone: that of their curve over the range of the stack.
+    /// They have one factor with which yaw leaves the thrust alone: that of their curve over the range of the stack, also
+    /// where one sense of yaw lifts more than the other, as on a Y6 with weaker lower rotors.
     #[test]
     fn of_isolated_rotors_the_factor_is_that_of_their_curve() {
-        let compiled = isolated();
-        for [idle, top] in [[0.0, 1.0], [0.15, 1.0], [0.1, 0.95]] {
+        let frames = [isolated(4, 1.0), isolated(3, 0.7)];
+        let ranges = [[0.0, 1.0], [0.15, 1.0], [0.1, 0.95]];
+        for (compiled, [idle, top]) in frames.iter().flat_map(|frame| ranges.map(|range| (frame, range))) {
             // 9 d^2 + 6 d at d = idle + (top - idle) t.
             let (square, line) = (
                 9.0 * (top - idle) * (top - idle),
                 (top - idle) * (6.0 + 18.0 * idle),
             );
             let curve = OwnCurve::parabola([idle, top]);
-            let factor = curve.steadiest(&compiled);
+            let factor = curve.steadiest(compiled);
             assert!(
                 (factor - square / (square + line)).abs() <= 0.005,
                 "{idle}: {factor}"
@@ -270,7 +277,7 @@ mod tests {
     /// A mixer that has the rotors' curve makes of a request its share of the thrust.
     #[test]
     fn with_the_rotors_curve_the_slope_is_one() {
-        let compiled = isolated();
+        let compiled = isolated(4, 1.0);
         let curve = OwnCurve::parabola([0.0, 1.0]);
         let slopes = [0.6, 0.0].map(|factor| curve.slope_in_hover(&compiled, factor).unwrap());
         assert!((slopes[0] - 1.0).abs() < 1e-4, "{slopes:?}");
