@@ -55,7 +55,7 @@ pub fn not_there(path: &Path, force: bool) -> Result<(), String> {
     }
 }
 
-/// Refuses an output that is one of the inputs, which is bad usage, or that is there already:
+/// Refuses an output that is one of the inputs or `-`, which is bad usage, or that is there already:
 /// before anything is computed.
 ///
 /// # Errors
@@ -74,6 +74,10 @@ pub(crate) fn writable(
             "{} is an input and would be overwritten",
             output.display()
         )));
+    }
+    if output == Path::new("-") {
+        let message = "- is no file: without -o the answer goes to standard output where there is one, ./- is a file of that name";
+        return Err(crate::bad_usage(message));
     }
     not_there(output, force).map_err(crate::print_error)
 }

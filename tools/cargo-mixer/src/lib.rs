@@ -23,6 +23,6 @@ fn deliver(output: Option<&Path>, force: bool, text: &str) -> Done {
     let Some(path) = output else {
         return print(text);
     };
-    let written = file::not_there(path, force).and_then(|()| file::save(path, text));
-    written.map_err(print_error)
+    file::writable(path, force, [""; 0])?;
+    file::save(path, text).map_err(print_error)
 }
