@@ -5,7 +5,7 @@ use mixer_compiler::atmosphere::TOP_M;
 
 use itertools::join;
 
-use super::List;
+use super::list::List;
 use crate::air::{Air, AtAltitude, LEAST_THRUST_OVER_WEIGHT};
 
 /// The battery's voltage.

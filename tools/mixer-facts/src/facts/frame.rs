@@ -6,7 +6,7 @@ use mixer_compiler::hover::HoverAt;
 
 use itertools::join;
 
-use super::{List, or_nothing};
+use super::list::{List, or_nothing};
 use crate::checklist;
 
 /// Share of the largest bare thrust at which the authority of any vehicle is looked at.

@@ -6,7 +6,7 @@ use mixer_compiler::hover::HoverAt;
 
 use itertools::join;
 
-use super::{List, one_or_list, or_nothing, whose};
+use super::list::{List, one_or_list, or_nothing, whose};
 use crate::hover::Hover;
 
 /// Mass, thrust over weight, throttles and what torque is left.

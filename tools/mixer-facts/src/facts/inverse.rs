@@ -4,7 +4,7 @@ use mixer_compiler::Compiled;
 use mixer_compiler::diagnostic::rounded_up;
 use serde_json::json;
 
-use super::{INSTRUCTIONS, List, or_nothing};
+use super::list::{INSTRUCTIONS, List, or_nothing};
 use crate::cost::Cost;
 
 /// The evaluator of the inverse map, and what is proven of its errors.

@@ -7,7 +7,7 @@ use mixer_compiler::model::PairMap;
 use mixer_compiler::power::LevelPower;
 use serde_json::{Value, json};
 
-use super::{List, one_or_list, or_nothing, whose};
+use super::list::{List, one_or_list, or_nothing, whose};
 
 /// Border points per edge of the throttle box at which the largest efforts are looked for.
 const SAMPLES: usize = 64;
