@@ -128,6 +128,32 @@ impl Flights {
             .collect::<Result<_, _>>()
             .map_err(|e| self.fault(&format!("{column}: {e}")))
     }
+
+    /// Words, and for each mixer the means over the flights of some steps under a condition; `-` where there is none.
+    fn line(
+        &self,
+        words: &str,
+        condition: &str,
+        steps: &[&str],
+        column: &str,
+    ) -> Result<Vec<String>, String> {
+        let mut line = vec![words.to_owned()];
+        let decimals = decimals(column);
+        for (mixer, _) in MIXERS {
+            let mut cells = Vec::new();
+            for step in steps {
+                let of = [("condition", condition), ("mixer", mixer), ("step", *step)];
+                let values = self.values(&of, column)?;
+                cells.push(match values.is_empty() {
+                    true => "-".to_owned(),
+                    false => format!("{:.decimals$}", mean(&values)),
+                });
+            }
+            cells.dedup_by(|a, b| a == "-" && b == "-");
+            line.push(cells.join("; "));
+        }
+        Ok(line)
+    }
 }
 
 fn mean(values: &[f64]) -> f64 {
@@ -184,11 +210,7 @@ pub(super) fn conditions(stack: &str) -> Result<String, String> {
     }
     let mut lines = Vec::new();
     for condition in conditions {
-        let mut line = vec![condition.to_owned()];
-        for (mixer, _) in MIXERS {
-            line.push(both(&flights, condition, mixer, &YAW, HEIGHT)?);
-        }
-        lines.push(line);
+        lines.push(flights.line(condition, condition, &YAW, HEIGHT)?);
     }
     Ok(markdown(
         &header(
@@ -197,28 +219,6 @@ pub(super) fn conditions(stack: &str) -> Result<String, String> {
         ),
         &lines,
     ))
-}
-
-/// Means over the flights of some steps; `-` where there is none.
-fn both(
-    flights: &Flights,
-    condition: &str,
-    mixer: &str,
-    steps: &[&str],
-    column: &str,
-) -> Result<String, String> {
-    let mut cells = Vec::new();
-    for step in steps {
-        let of = [("condition", condition), ("mixer", mixer), ("step", *step)];
-        let values = flights.values(&of, column)?;
-        let decimals = decimals(column);
-        cells.push(match values.is_empty() {
-            true => "-".to_owned(),
-            false => format!("{:.decimals$}", mean(&values)),
-        });
-    }
-    cells.dedup_by(|a, b| a == "-" && b == "-");
-    Ok(cells.join("; "))
 }
 
 /// What else was flown with one vehicle: words, condition, step, column.
@@ -340,10 +340,7 @@ pub(super) fn manoeuvres(stack: &str) -> Result<String, String> {
     let flights = Flights::read(&format!("{stack}-conditions"))?;
     let mut lines = Vec::new();
     for (words, condition, step, column) in MANOEUVRES {
-        let mut line = vec![words.to_owned()];
-        for (mixer, _) in MIXERS {
-            line.push(both(&flights, condition, mixer, &[step], column)?);
-        }
+        let line = flights.line(words, condition, &[step], column)?;
         if line[1..].iter().any(|cell| cell != "-") {
             lines.push(line);
         }
