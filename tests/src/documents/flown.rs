@@ -198,7 +198,7 @@ fn header<'a>(first: &'a str, mixers: &[(&str, &'a str)]) -> Vec<&'a str> {
         .collect()
 }
 
-/// Steps of yaw of one vehicle under each condition: height errors, of `mix` and `mix_dynamic` the thrust.
+/// Height errors of one vehicle in steps of yaw, under each condition.
 pub(super) fn conditions(stack: &str) -> Result<String, String> {
     let flights = Flights::read(&format!("{stack}-conditions"))?;
     let [condition_at, step_at] = [flights.at("condition")?, flights.at("step")?];

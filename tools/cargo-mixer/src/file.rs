@@ -45,7 +45,7 @@ pub fn source(path: &Path) -> Result<Source, String> {
 ///
 /// # Errors
 /// A regular file of that name.
-pub fn not_there(path: &Path, force: bool) -> Result<(), String> {
+fn not_there(path: &Path, force: bool) -> Result<(), String> {
     match fs::metadata(path) {
         Ok(found) if found.is_file() && !force => Err(format!(
             "{} is there already: --force overwrites it",

@@ -1,9 +1,8 @@
 //! The battery's voltage and the air's density.
 
+use itertools::join;
 use mixer_compiler::Compiled;
 use mixer_compiler::atmosphere::TOP_M;
-
-use itertools::join;
 
 use super::list::List;
 use crate::air::{Air, AtAltitude, LEAST_THRUST_OVER_WEIGHT};

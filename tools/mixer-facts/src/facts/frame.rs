@@ -1,10 +1,9 @@
 //! What the vehicle is: frame, axes, thrust and authority.
 
+use itertools::join;
 use mixer_compiler::Compiled;
 use mixer_compiler::airframe::Airframe;
 use mixer_compiler::hover::HoverAt;
-
-use itertools::join;
 
 use super::list::{List, or_nothing};
 use crate::checklist;
@@ -15,7 +14,7 @@ const SHARE: f64 = 0.4;
 /// Units in a line of the frame.
 const UNITS_A_LINE: usize = 3;
 
-/// What it is, its thrust and its authority.
+/// Name, rotors, frame, served axes and the condition of M.
 pub(super) fn gives(list: &mut List, compiled: &Compiled) {
     let (airframe, m) = (&compiled.airframe, &compiled.effectiveness);
     let axes: Vec<&str> = airframe.allocation.axes.iter().map(|axis| axis.name()).collect();

@@ -1,10 +1,9 @@
 //! The vehicle in hover, with all its rotors and with one out.
 
+use itertools::join;
 use mixer_compiler::Compiled;
 use mixer_compiler::flywheel::Flywheel;
 use mixer_compiler::hover::HoverAt;
-
-use itertools::join;
 
 use super::list::{List, one_or_list, or_nothing, whose};
 use crate::hover::Hover;

@@ -1,6 +1,5 @@
 //! The headers and the CMake file.
 
-use itertools::Itertools;
 use std::fmt::Display;
 
 use mixer_compiler::airframe::Correction;
@@ -221,7 +220,7 @@ fn float(value: f32) -> String {
 /// Rows of a table of C.
 fn rows<const N: usize>(rows: &[[f64; N]]) -> String {
     let row = |row: &[f64; N]| format!("{{{}}}", row.map(|value| float(value as f32)).join(", "));
-    rows.iter().map(row).join(", \\\n    ")
+    itertools::join(rows.iter().map(row), ", \\\n    ")
 }
 
 /// Text that ends no comment and begins none, on one line.

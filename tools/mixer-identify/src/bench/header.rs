@@ -341,7 +341,7 @@ impl Columns {
         }
     }
 
-    /// Two columns for one role: guessing would be silent. Only two units may tell one of them.
+    /// Two columns for one role: guessing would be silent. In two units they may be one, which the rows tell.
     fn twice(
         &mut self,
         role: &str,

@@ -1,6 +1,5 @@
 //! Asks Betaflight by MSP what keeps it from arming.
 
-use itertools::Itertools;
 use std::io::{Read, Write};
 use std::net::{Ipv4Addr, TcpStream};
 use std::time::Duration;
@@ -72,7 +71,7 @@ fn held(count: usize, flags: u32) -> String {
         None => COAXIAL.to_owned(),
     };
     let bits = (0..count.saturating_sub(1)).filter(|bit| flags >> bit & 1 == 1);
-    bits.map(name).join(", ")
+    itertools::join(bits.map(name), ", ")
 }
 
 #[cfg(test)]
